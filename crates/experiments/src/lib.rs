@@ -1,7 +1,7 @@
 //! Reproduction of the papers: plans of runs on stored logs and on public recordings, their bounds, and a report of all.
 //!
 //! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots; [`color`],
-//! [`cml`], [`films`], [`corridor`] and [`venues`] are those of one system each.
+//! [`cml`], [`films`], [`corridor`], [`simplification`] and [`venues`] are those of one system each.
 
 pub mod cli;
 pub mod cml;
@@ -12,6 +12,7 @@ pub mod films;
 pub mod fixtures;
 pub mod monobot;
 pub mod regress;
+pub mod simplification;
 pub mod venues;
 mod views_paper;
 

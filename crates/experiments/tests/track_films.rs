@@ -65,5 +65,5 @@ fn film_table_has_all_methods_for_any_thread_count() {
         assert_eq!(of(&format!("{method}_iou_mean")).spread.unwrap().n, 3);
     }
     // What is promised for the whole film; these are its first frames.
-    assert!(of("contour_iou_mean").value >= 0.75 && of("contour_frames_lost").value == 0.0);
+    assert!(of("contour_iou_mean").value >= 0.75 && of("contour_n_frames_lost").value == 0.0);
 }

@@ -4,7 +4,7 @@ use crate::error::{IntegrityError, check};
 ///
 /// ```
 /// use wayfix_integrity::RelocalizationParams;
-/// let params = RelocalizationParams { false_alarms_per_km: 0.01, moved_per_km: 1.0, ..Default::default() };
+/// let params = RelocalizationParams { false_alarms_per_km: 0.01, kidnappings_per_km: 1.0, ..Default::default() };
 /// assert_eq!(params.threshold(), 1e5); // m
 /// assert!((params.probability(params.threshold()) - 100.0 / 101.0).abs() < 1e-12); // at an alarm
 /// ```
@@ -38,11 +38,7 @@ impl RelocalizationParams {
     /// # Errors
     /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), IntegrityError> {
-        let Self {
-            false_alarms_per_km,
-            kidnappings_per_km: moved_per_km,
-            alternative_kept_distance: kept_distance,
-        } = *self;
+        let Self { false_alarms_per_km, kidnappings_per_km, alternative_kept_distance } = *self;
         let positive = |value: f64| value > 0.0 && value.is_finite();
         check(
             "false_alarms_per_km",
@@ -50,9 +46,14 @@ impl RelocalizationParams {
             positive(false_alarms_per_km),
             "positive and finite",
         )?;
-        let is_above = positive(moved_per_km) && moved_per_km > false_alarms_per_km;
-        check("moved_per_km", moved_per_km, is_above, "finite and above false_alarms_per_km")?;
-        check("kept_distance (m)", kept_distance, kept_distance >= 0.0, "0 or more")
+        let is_above = positive(kidnappings_per_km) && kidnappings_per_km > false_alarms_per_km;
+        check("kidnappings_per_km", kidnappings_per_km, is_above, "finite and above false_alarms_per_km")?;
+        check(
+            "alternative_kept_distance (m)",
+            alternative_kept_distance,
+            alternative_kept_distance >= 0.0,
+            "0 or more",
+        )
     }
 
     /// The statistic at which a change is decided: the mean distance between false alarms, m.

@@ -56,10 +56,10 @@ impl KldSampling {
             return parameter("confidence", confidence, "in [0.5, 1)");
         }
         if min == 0 {
-            return parameter("min", 0.0, "at least 1");
+            return parameter("min_particles", 0.0, "at least 1");
         }
         if max < min {
-            return parameter("max", max as f64, "at least min");
+            return parameter("max_particles", max as f64, "at least min_particles");
         }
         Ok(Self { params, z: Normal::standard().inverse_cdf(confidence) })
     }

@@ -91,8 +91,8 @@ fn parameters_out_of_range_are_named() {
         (KldParams { epsilon: f64::NAN, ..good }, "epsilon"),
         (KldParams { confidence: 1.0, ..good }, "confidence"),
         (KldParams { confidence: 0.1, ..good }, "confidence"),
-        (KldParams { min_particles: 0, ..good }, "min"),
-        (KldParams { max_particles: 99, ..good }, "max"),
+        (KldParams { min_particles: 0, ..good }, "min_particles"),
+        (KldParams { max_particles: 99, ..good }, "max_particles"),
     ] {
         let refused = KldSampling::new(params);
         assert!(matches!(refused, Err(ParticleError::Parameter { what: named, .. }) if named == what));

@@ -5,7 +5,7 @@ use crate::ScanMatchError;
 /// ```
 /// use wayfix_scan_match::{ScanMatcher, ScanMatchParams};
 /// assert!(ScanMatcher::new(ScanMatchParams::default()).is_ok());
-/// assert!(ScanMatcher::new(ScanMatchParams { sigma_m: 0.0, ..ScanMatchParams::default() }).is_err());
+/// assert!(ScanMatcher::new(ScanMatchParams { point_sigma_m: 0.0, ..ScanMatchParams::default() }).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -50,18 +50,18 @@ impl ScanMatchParams {
     /// Returns an error with the first parameter that is out of range.
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
-            ("sigma_m", self.point_sigma_m),
+            ("point_sigma_m", self.point_sigma_m),
             ("correlation_angle_rad", self.correlation_angle_rad),
             ("kernel_m", self.kernel_m),
             ("initial_kernel_m", self.initial_kernel_m),
-            ("start_spacing_rad", self.initial_heading_spacing_rad),
+            ("initial_heading_spacing_rad", self.initial_heading_spacing_rad),
         ] {
             if !(1e-6..=1e3).contains(&value) {
                 return Err(ScanMatchError::Value { what, value, must: "from 1e-6 to 1e3" });
             }
         }
         if self.max_iterations == 0 {
-            return Err(ScanMatchError::Value { what: "max_steps", value: 0.0, must: "at least 1" });
+            return Err(ScanMatchError::Value { what: "max_iterations", value: 0.0, must: "at least 1" });
         }
         Ok(())
     }

@@ -2,6 +2,17 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 
+/// Path of a parameter in a parameter file, its value and its range: `number!(sensor.range_sigma, RANGE)`. With `in "sensor"` the path begins there.
+macro_rules! number {
+    (in $table:literal, $($path:ident).+, $range:expr) => {
+        (concat!($table, $(".", stringify!($path)),+), $($path).+, $range)
+    };
+    ($table:ident . $($path:ident).+, $range:expr) => {
+        (concat!(stringify!($table), $(".", stringify!($path)),+), $table.$($path).+, $range)
+    };
+}
+pub(crate) use number;
+
 /// Returns `defaults` overridden by the values of a TOML text.
 ///
 /// # Errors

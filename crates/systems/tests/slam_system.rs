@@ -100,7 +100,7 @@ fn non_finite_measurement_is_counted_and_changes_nothing() {
     ];
     let clean = slam(&[velocity(0.0, 0.5, 0.1), look(&[])], RobotParams::default());
     let mut slam = slam(&[velocity(0.0, 0.5, 0.1), look(&bad)], RobotParams::default());
-    assert_eq!(slam.events().get("unusable"), bad.len() as u64);
+    assert_eq!(slam.events().get("observation_unusable"), bad.len() as u64);
     assert_eq!(slam.system.filter().robot(), clean.system.filter().robot());
     assert_eq!(slam.system.filter().covariance(), clean.system.filter().covariance());
 }

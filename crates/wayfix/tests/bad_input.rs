@@ -45,9 +45,9 @@ fn invalid_detections_and_motions_leave_the_filter_unchanged() {
     let scratch = Scratch::new();
     let clean = run_slam(&scratch.file("walk.txt", walk(40)), &[]).figures();
     for (line, event) in [
-        ("Z 99 0 0.1", "unusable"),
-        ("Z 99 -2 0.1", "unusable"),
-        ("Z 99 1e200 0.1", "unusable"),
+        ("Z 99 0 0.1", "observation_unusable"),
+        ("Z 99 -2 0.1", "observation_unusable"),
+        ("Z 99 1e200 0.1", "observation_unusable"),
         ("O 1e300 0 0", "record_refused"),
         ("O 1e30 0 0", "record_refused"),
     ] {
@@ -83,7 +83,7 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
         .collect();
     let outcome = run_slam(&scratch.file("doubled.txt", doubled), &[]);
     let n_detections = text.lines().filter(|line| line.starts_with('Z')).count();
-    assert_eq!(outcome.event("duplicate"), n_detections as u64);
+    assert_eq!(outcome.event("observation_duplicate"), n_detections as u64);
     assert_eq!(outcome.metric("n_rejected"), n_detections as f64);
     assert!(outcome.stderr.contains("a second time in one scan"), "{}", outcome.stderr);
     assert!(outcome.stderr.contains(&format!("and {} more", n_detections - 20)), "{}", outcome.stderr);
@@ -195,9 +195,9 @@ fn parameters_that_make_no_sense_are_refused_by_name() {
         ("[sensor]\nbearing_sigma = -0.1", "sensor.bearing_sigma"),
         ("[sensor]\nrange_sigma = nan", "sensor.range_sigma"),
         ("[sensor]\nrange_sigma = 0", "sensor.range_sigma"),
-        ("[increment]\nheading_variance_per_step = inf", "increment.heading_variance_per_step"),
+        ("[increment_noise]\nheading_variance_per_step = inf", "increment_noise.heading_variance_per_step"),
         ("[robot]\ncommand_delay = 1e300", "robot.command_delay"),
-        ("[nearest_neighbour]\naccept = -1", "accept"),
+        ("[nearest_neighbour]\ngate_nis = -1", "gate_nis"),
         ("[sensor]\nrange_sgima = 1", "range_sgima"),
         ("colour = 1", "colour"),
         ("[sensor]\nrange_sigma = 'small'", "sensor.range_sigma"),

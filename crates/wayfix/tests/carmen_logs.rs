@@ -114,10 +114,10 @@ fn parameters_with_a_byte_order_mark_are_read() {
     let scratch = Scratch::new();
     let log = scratch.file("drive.log", log(|_| true));
     let log = log.to_str().unwrap();
-    let marked = scratch.file("marked.toml", "\u{feff}laser = [0.4, 0.0, 0.0]\r\n");
+    let marked = scratch.file("marked.toml", "\u{feff}laser_pose = [0.4, 0.0, 0.0]\r\n");
     let outcome = wayfix(["run", "slam", "--json", "--log", log, "--params", marked.to_str().unwrap()]);
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
-    let utf16: Vec<u8> = "laser = [0.4, 0.0, 0.0]".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let utf16: Vec<u8> = "laser_pose = [0.4, 0.0, 0.0]".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let utf16 = scratch.file("utf16.toml", utf16);
     let outcome = wayfix(["run", "slam", "--json", "--log", log, "--params", utf16.to_str().unwrap()]);
     assert!(outcome.code == 1 && outcome.stderr.contains("UTF-16"), "{}", outcome.stderr);

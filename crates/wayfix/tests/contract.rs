@@ -135,7 +135,7 @@ fn a_log_that_tells_of_its_motion_twice_moves_once() {
     let path = scratch.path("twice.mcap");
     wayfix_sensor_log::write(&path, wayfix_sensor_log::LogFormat::Mcap, records).expect("writable");
     let outcome = run_slam(&path, &["--profile", "utias"]);
-    assert_eq!(outcome.event("second_odometry"), 49);
+    assert_eq!(outcome.event("second_odometry_source"), 49);
     assert_eq!(outcome.metric("ate_rmse_m"), once.metric("ate_rmse_m"));
 }
 

@@ -80,13 +80,13 @@ fn the_command_saves_and_goes_on() {
     run_slam(&first, &["--save", &text(&map)]).json();
     let resumed = run_slam(&both, &["--resume", &text(&map), "--save", &text(&map), "--save-every", "1"]);
     run_slam(&both, &["--save", &text(&all)]).json();
-    assert!(resumed.event("before_resume") > 0);
+    assert!(resumed.event("record_before_resume") > 0);
     assert_eq!(fs::read(&map).unwrap(), fs::read(&all).unwrap());
 
     let refused = |outcome: Outcome, why: &str| {
         assert!(outcome.code == 1 && outcome.stderr.contains(why), "{}", outcome.stderr);
     };
-    refused(run_slam(&both, &["--resume", &text(&map)]), "before_resume");
+    refused(run_slam(&both, &["--resume", &text(&map)]), "record_before_resume");
     refused(
         run_slam(&both, &["--resume", &text(&map), "--association", "nn"]),
         "association is known, here it is nn",

@@ -50,7 +50,7 @@ fn bag_walls_correct_odometry_with_the_mount_of_its_transform() {
 
     let folder = tempfile::tempdir().unwrap();
     let params = folder.path().join("middle.toml");
-    fs::write(&params, "laser = [0.0, 0.0, 0.0]\n").unwrap();
+    fs::write(&params, "laser_pose = [0.0, 0.0, 0.0]\n").unwrap();
     let misplaced = with_bag(&slam, &["--params", params.to_str().unwrap()]);
     assert!(misplaced.metric("ate_rmse_m") > 4.0 * placed.metric("ate_rmse_m"), "{}", misplaced.stdout);
 }

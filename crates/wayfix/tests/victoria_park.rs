@@ -97,7 +97,7 @@ fn the_antenna_and_not_the_axle_is_compared_with_the_fixes() {
 fn a_start_that_is_given_goes_before_the_fit() {
     let scratch = Scratch::new();
     let set = folder(&scratch, "set", 60, true);
-    let params = scratch.file("params.toml", "start = [-29.0, 20.0, 1.0]\n"); // a metre beside
+    let params = scratch.file("params.toml", "start_pose = [-29.0, 20.0, 1.0]\n"); // a metre beside
     let outcome = run_slam(&set, &["--params", params.to_str().unwrap()]);
     assert!((outcome.metric("ate_rmse_m") - 1.0).abs() < ROUNDING, "{}", outcome.stdout);
     assert!(outcome.metric("ate_aligned_rmse_m") < ROUNDING);

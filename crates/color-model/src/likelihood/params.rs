@@ -84,7 +84,7 @@ impl Region {
 
 impl PixelLikelihoodParams {
     /// The densities of all colours under one light, each widened along the direction of shade, by $`σ^2 s_m s_m^\top`$ with
-    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`. These densities classify single pixels. Less light scales red,
+    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `brightness_variation`. These densities classify single pixels. Less light scales red,
     /// green and blue by one factor, also with gamma, which moves a colour towards black. Black is Y = 0, as in full-range YUV.
     /// ```
     /// use nalgebra::{Matrix3, Vector3};

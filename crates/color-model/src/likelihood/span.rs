@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{ColorDensity, ColorModelError, PixelSums, PrefixSumImage};
 
-/// Sums the pixels of each colour where the projected map at `camera_pose` shows it, without the pixels within `edge_margin` of an edge.
+/// Sums the pixels of each colour where the projected map at `camera_pose` shows it, without the pixels within `edge_margin_pixels` of an edge.
 ///
 /// The sums do not depend on the light: they serve every lighting hypothesis and the colour means that update it.
 /// # Errors

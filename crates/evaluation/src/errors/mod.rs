@@ -14,4 +14,4 @@ pub use landmarks::{LandmarkCorrespondence, landmark_errors};
 pub use positions::TruePositions;
 pub use trajectory::{TrajectoryErrors, TrajectorySample, trajectory_errors};
 pub use truth::LONGEST_GAP;
-pub use truth::ReferenceTrajectory;
+pub use truth::ReferencePath;

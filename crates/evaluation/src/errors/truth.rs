@@ -6,7 +6,7 @@ use super::{TrajectorySample, truth_noise::truth_noise};
 
 /// Reference poses over time: true ones, or estimates of another program.
 #[derive(Clone, Debug, Default)]
-pub struct ReferenceTrajectory {
+pub struct ReferencePath {
     poses: Vec<(Stamp, Pose2<f64>)>,
     noise: Matrix3<f64>,
     is_estimate: bool,
@@ -15,7 +15,7 @@ pub struct ReferenceTrajectory {
 /// Longest interval over which truth is interpolated, s; motion capture and GPS have gaps.
 pub const LONGEST_GAP: f64 = 0.5;
 
-impl ReferenceTrajectory {
+impl ReferencePath {
     /// The true poses among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
         let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
@@ -111,12 +111,12 @@ impl ReferenceTrajectory {
 mod tests {
     use super::*;
 
-    fn track(rows: &[(u64, f64)]) -> ReferenceTrajectory {
+    fn track(rows: &[(u64, f64)]) -> ReferencePath {
         let record = |&(milliseconds, heading): &(u64, f64)| Record {
             stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000),
             data: RecordData::TruePose(Pose2::new(milliseconds as f64, 0.0, heading)),
         };
-        ReferenceTrajectory::from_records(&rows.iter().map(record).collect::<Vec<_>>())
+        ReferencePath::from_records(&rows.iter().map(record).collect::<Vec<_>>())
     }
 
     #[test]

@@ -73,7 +73,7 @@ pub fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Result<Rep
     let (low, high) = proportion_interval(n_diverged as u64, found.len() as u64);
     let metrics = vec![
         Metric::new("trials", courses.len() as f64, ""),
-        Metric::new("found", found.len() as f64, ""),
+        Metric::new("n_relocalized", found.len() as f64, ""),
         Metric::new("diverged_after_relocalization_share", share(n_diverged), ""),
         Metric::new("diverged_after_relocalization_share_low95", low, ""),
         Metric::new("diverged_after_relocalization_share_high95", high, ""),

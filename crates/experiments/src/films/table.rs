@@ -63,7 +63,7 @@ fn over_seeds(scores: &[&FilmScore], incident: OcclusionEvent) -> Vec<Metric> {
     let mut metrics = vec![
         Metric { spread, ..Metric::new("iou_mean", mean(&ious), "") },
         Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
-        Metric::new("frames_lost", sum(|score| score.n_lost), ""),
+        Metric::new("n_frames_lost", sum(|score| score.n_lost), ""),
     ];
     let mut status = StatusScore::default();
     scores.iter().for_each(|score| status.merge(&score.status));
@@ -85,7 +85,7 @@ fn over_seeds(scores: &[&FilmScore], incident: OcclusionEvent) -> Vec<Metric> {
     let n_hidden = sum(|score| score.n_hidden);
     if n_hidden > 0.0 {
         let share = sum(|score| score.n_hidden_and_lost) / n_hidden;
-        metrics.push(Metric::new("lost_reported_share", share, ""));
+        metrics.push(Metric::new("lost_detection_recall", share, ""));
     }
     metrics
 }

@@ -54,9 +54,9 @@ impl MonobotMonteCarlo {
             Metric::new("first_landmark_rms_m", root_mean_square(&first), "m"),
             Metric::new("end_landmark_rms_m", root_mean_square(&end), "m"),
             Metric::new("end_landmark_sigma_m", root_mean_square(&claimed), "m"),
-            Metric::new("end_on_first_slope", slope(&first, &end), ""),
-            Metric::new("bias_in_half_widths", bias, ""),
-            Metric::new("end_landmark_gain", root_mean_square(&gains), ""),
+            Metric::new("end_on_first_error_slope", slope(&first, &end), ""),
+            Metric::new("bias_over_confidence_half_width", bias, ""),
+            Metric::new("end_landmark_kalman_gain", root_mean_square(&gains), ""),
             Metric::new("fisher_rank", rank, ""),
             Metric::new("state_dimension", dimension, ""),
         ]

@@ -54,7 +54,7 @@ impl Default for JointCompatibilityParams {
 /// largest set of pairings whose *joint* NIS passes, $`ν^T S^{-1} ν ≤ χ^2_{\dim ν}(p)`$, and among the largest the one of smallest NIS. A
 /// set grows by one pairing at a time, observations with the fewest candidates first, and must pass at every size. [Neira & Tardós 2001]
 ///
-/// An unpaired observation starts a landmark if its NIS to every landmark exceeds `certainly_new`, as with
+/// An unpaired observation starts a landmark if its NIS to every landmark exceeds `new_landmark_nis`, as with
 /// [`NearestNeighbour`](super::NearestNeighbour).
 ///
 /// ```
@@ -78,20 +78,18 @@ impl JointCompatibility {
     /// # Errors
     /// Returns [`SlamError::Parameter`] if a parameter is out of range.
     pub fn new(params: JointCompatibilityParams) -> Result<Self, SlamError> {
-        let JointCompatibilityParams {
-            gate_probability: probability, new_landmark_nis: certainly_new, ..
-        } = params;
+        let JointCompatibilityParams { gate_probability: probability, new_landmark_nis, .. } = params;
         let Ok(first) = ChiSquaredGate::from_probability(1, probability) else {
             let range = "between 0 and 1, exclusive";
-            return Err(SlamError::Parameter { name: "probability", value: probability, range });
+            return Err(SlamError::Parameter { name: "gate_probability", value: probability, range });
         };
         if params.ambiguity_margin.is_nan() || params.ambiguity_margin < 0.0 {
             let (name, value) = ("ambiguity_margin", params.ambiguity_margin);
             return Err(SlamError::Parameter { name, value, range: "not negative" });
         }
-        if certainly_new.is_nan() || certainly_new < first.threshold() {
+        if new_landmark_nis.is_nan() || new_landmark_nis < first.threshold() {
             let range = "at least the gate";
-            return Err(SlamError::Parameter { name: "certainly_new", value: certainly_new, range });
+            return Err(SlamError::Parameter { name: "new_landmark_nis", value: new_landmark_nis, range });
         }
         Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
     }

@@ -34,8 +34,8 @@ impl Default for NearestNeighbourParams {
 
 /// Individual-compatibility nearest neighbour with two thresholds, for sensors that read no identity.
 ///
-/// An observation belongs to the landmark of smallest NIS if that is at most `accept`; it starts a new landmark if even the nearest
-/// is further than `certainly_new`. Nothing in between becomes a landmark, which keeps duplicates out of the map.
+/// An observation belongs to the landmark of smallest NIS if that is at most `gate_nis`; it starts a new landmark if even the nearest
+/// is further than `new_landmark_nis`. Nothing in between becomes a landmark, which keeps duplicates out of the map.
 /// Each landmark takes at most one observation per scan. [Dissanayake et al. 2001, section V]
 #[derive(Clone, Debug)]
 pub struct NearestNeighbour {
@@ -49,14 +49,14 @@ impl NearestNeighbour {
     /// # Errors
     /// Returns [`SlamError::Parameter`] if the thresholds are not positive and ordered.
     pub fn new(params: NearestNeighbourParams) -> Result<Self, SlamError> {
-        let NearestNeighbourParams { gate_nis: accept, new_landmark_nis: certainly_new, .. } = params;
+        let NearestNeighbourParams { gate_nis: accept, new_landmark_nis, .. } = params;
         if !(accept > 0.0 && accept.is_finite()) {
-            return Err(SlamError::Parameter { name: "accept", value: accept, range: "positive" });
+            return Err(SlamError::Parameter { name: "gate_nis", value: accept, range: "positive" });
         }
-        if certainly_new.is_nan() || certainly_new < accept {
+        if new_landmark_nis.is_nan() || new_landmark_nis < accept {
             return Err(SlamError::Parameter {
-                name: "certainly_new",
-                value: certainly_new,
+                name: "new_landmark_nis",
+                value: new_landmark_nis,
                 range: "at least accept",
             });
         }

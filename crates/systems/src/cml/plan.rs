@@ -9,7 +9,7 @@ use super::{
     synthetic_odometry,
 };
 use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
-use wayfix_evaluation::errors::ReferenceTrajectory;
+use wayfix_evaluation::errors::ReferencePath;
 
 /// Contents of a run: the training views, and the records to process after training.
 #[derive(Clone, Debug, Default)]
@@ -132,7 +132,7 @@ impl CmlRunPlan {
             plan.records = records;
             return Ok(plan);
         }
-        let truth = ReferenceTrajectory::from_records(&records);
+        let truth = ReferencePath::from_records(&records);
         ensure!(
             truth.last_stamp().is_some(),
             "nothing can be taught: the log has no true poses (without --withhold the map is built as the robot goes)"

@@ -10,7 +10,7 @@ use wayfix_sensor_log::{Record, RecordData};
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
 
 use crate::system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay};
-use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample};
+use wayfix_evaluation::errors::{ReferencePath, TrajectorySample};
 
 /// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub struct CmlRun {
     /// The system in its last state.
     pub system: CmlSystem,
     /// True poses, where there are any.
-    pub truth: ReferenceTrajectory,
+    pub truth: ReferencePath,
     /// Whether the true headings were measured.
     pub headings_are_measured: bool,
     /// Remarks for the user.
@@ -81,7 +81,7 @@ pub fn run(
     Ok(CmlRun {
         task,
         system,
-        truth: ReferenceTrajectory::from_records(&plan.records),
+        truth: ReferencePath::from_records(&plan.records),
         headings_are_measured: plan.headings_are_measured,
         notes: plan.notes.clone(),
     })
@@ -96,8 +96,7 @@ pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
     // An increment begins at the record before it.
     let is_increment = matches!(records[first].data, RecordData::OdometryIncrement(_));
     let begin = if is_increment { first.saturating_sub(1) } else { first };
-    let start =
-        TrueStartPose::at(records[begin].stamp, &ReferenceTrajectory::from_records(records), records)?;
+    let start = TrueStartPose::at(records[begin].stamp, &ReferencePath::from_records(records), records)?;
     Some(start.pose)
 }
 

@@ -167,9 +167,9 @@ impl CmlSystem {
             self.events.count(match event {
                 Event::NewReference(_) => "new_reference",
                 Event::Forgotten(_) => "reference_forgotten",
-                Event::Lost => "lost",
-                Event::Found => "found",
-                Event::Relocated => "relocated",
+                Event::Lost => "pose_lost",
+                Event::Found => "pose_found",
+                Event::Relocated => "pose_relocated",
                 _ => "other",
             });
         }

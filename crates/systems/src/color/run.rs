@@ -15,14 +15,14 @@ use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
     system::{ODOMETRY, RunStep, System, check_overlap, drive, without_odometry_delay},
 };
-use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample};
+use wayfix_evaluation::errors::{ReferencePath, TrajectorySample};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
     /// The system in its last state.
     pub system: ColorSystem,
     /// True poses, where the log has them.
-    pub truth: ReferenceTrajectory,
+    pub truth: ReferencePath,
 }
 
 /// Processes the records of a log with the localizer and shows each step to `observe`.
@@ -45,7 +45,7 @@ pub fn run(
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
     check_overlap(records, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
-    let truth = ReferenceTrajectory::from_records(records);
+    let truth = ReferencePath::from_records(records);
     let known = TrueStartPose::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
     let start = start.unwrap_or_else(|| match known {
         Some(known) => StartPose::Near(guess(&known.pose, params, seed)),

@@ -32,8 +32,8 @@ fn beside_truth(score: WallScore) -> Vec<Metric> {
     vec![
         Metric::new("within_2_sigma_share", share(n_within_2_sigma, n_true), ""),
         Metric::new("nees_mean", squared_sum / n_true as f64, ""),
-        Metric::new("false_share", share(n_false, n_true + n_false), ""),
-        Metric::new("found_share", share(n_visible - n_missed, n_visible), ""),
+        Metric::new("false_wall_share", share(n_false, n_true + n_false), ""),
+        Metric::new("found_wall_share", share(n_visible - n_missed, n_visible), ""),
     ]
 }
 

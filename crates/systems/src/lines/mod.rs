@@ -1,18 +1,16 @@
 //! Walls in the scans of a log: line segments fitted to laser echoes.
 //!
 //! [`LineSystem`] takes the records, [`summarize`] gives the figures, [`plots`] the pictures, [`LineLog`] the scans and walls for viewers;
-//! [`WallScore`] compares with true walls, [`simplification`] measures polyline simplification.
+//! [`WallScore`] compares with true walls.
 
 mod estimates;
 mod figures;
 mod plots;
-mod simplification;
 mod system;
 mod truth;
 
 pub use estimates::{LineDrawing, LineLog};
 pub use figures::summarize;
 pub use plots::plots;
-pub use simplification::simplification;
 pub use system::{LineSystem, ScanWalls};
 pub use truth::WallScore;

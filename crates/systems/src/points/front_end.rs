@@ -94,7 +94,7 @@ impl FrontEnd for PointFrontEnd {
         let stamp = record.stamp;
         match &record.data {
             odometry if OdometryKind::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
-                estimator.events.count("second_odometry");
+                estimator.events.count("second_odometry_source");
                 Ok(())
             }
             RecordData::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
@@ -162,7 +162,7 @@ impl PointFrontEnd {
         estimator: &mut Points,
     ) -> Result<(), String> {
         if stamp < self.time {
-            estimator.events.count("before_start");
+            estimator.events.count("record_before_start");
             return Ok(());
         }
         let observations = self.observations(detections, estimator);
@@ -246,7 +246,7 @@ impl PointFrontEnd {
                     continue;
                 }
                 DetectionTarget::UnknownCode(_) => {
-                    estimator.events.count("unknown_code");
+                    estimator.events.count("unknown_landmark_code");
                     continue;
                 }
             };

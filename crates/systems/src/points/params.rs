@@ -309,7 +309,7 @@ mod tests {
             ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
             ("sensor = 3", "`sensor`"),
-            ("[filter]\noutliers = 'ignore'", "`filter.outliers`"),
+            ("[filter]\noutlier_rule = 'ignore'", "`filter.outlier_rule`"),
             ("[filter.confirmation]\nn_detections = -1", "`filter.confirmation.n_detections`"),
             ("[sensor", "line 1"),
         ] {

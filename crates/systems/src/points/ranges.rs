@@ -3,6 +3,7 @@ use std::ops::RangeInclusive;
 use wayfix_slam_ekf::{ConfirmationParams, JointCompatibility, NearestNeighbour, SlamError};
 
 use super::PointSlamParams;
+use crate::settings::number;
 
 /// What a parameter may be, for the machine and in words.
 type Range = (RangeInclusive<f64>, &'static str);
@@ -35,16 +36,7 @@ impl PointSlamParams {
     /// # Errors
     /// [`SlamError::Parameter`] for the first that is not.
     pub fn validated(self) -> Result<Self, SlamError> {
-        let Self {
-            robot,
-            mounting,
-            vehicle,
-            sensor,
-            velocity_noise: velocity,
-            increment_noise: increment,
-            filter,
-            ..
-        } = &self;
+        let Self { robot, mounting, vehicle, sensor, velocity_noise, increment_noise, filter, .. } = &self;
         let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
@@ -55,82 +47,54 @@ impl PointSlamParams {
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
         let times_seen = |confirmation: &ConfirmationParams| confirmation.n_detections as f64;
         for (name, value, (range, words)) in [
-            ("robot.sensor_latency", robot.sensor_latency, DELAY),
-            ("robot.command_delay", robot.command_delay, DELAY),
-            ("robot.turn_command_shortening", robot.turn_command_shortening, DELAY),
-            ("robot.velocity_hold", robot.velocity_hold, NOT_NEGATIVE),
-            ("robot.range_scale_sigma", robot.range_scale_sigma, NOT_NEGATIVE),
-            ("mounting.sensor_x", mounting.sensor_x, PLACE),
-            ("mounting.sensor_y", mounting.sensor_y, PLACE),
-            ("mounting.sensor_heading", mounting.sensor_heading, PLACE),
-            ("mounting.antenna_x", mounting.antenna_x, PLACE),
-            ("mounting.antenna_y", mounting.antenna_y, PLACE),
-            ("vehicle.wheel_base", vehicle.wheel_base, WHEEL_BASE),
-            ("vehicle.wheel_offset", vehicle.wheel_offset, PLACE),
-            ("sensor.range_sigma", sensor.range_sigma, NOT_NEGATIVE),
-            ("sensor.range_sigma_per_meter", sensor.range_sigma_per_meter, NOT_NEGATIVE),
+            number!(robot.sensor_latency, DELAY),
+            number!(robot.command_delay, DELAY),
+            number!(robot.turn_command_shortening, DELAY),
+            number!(robot.velocity_hold, NOT_NEGATIVE),
+            number!(robot.range_scale_sigma, NOT_NEGATIVE),
+            number!(mounting.sensor_x, PLACE),
+            number!(mounting.sensor_y, PLACE),
+            number!(mounting.sensor_heading, PLACE),
+            number!(mounting.antenna_x, PLACE),
+            number!(mounting.antenna_y, PLACE),
+            number!(vehicle.wheel_base, WHEEL_BASE),
+            number!(vehicle.wheel_offset, PLACE),
+            number!(sensor.range_sigma, NOT_NEGATIVE),
+            number!(sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
-            ("sensor.bearing_sigma", sensor.bearing_sigma, SENSOR_NOISE),
-            (
-                "sensor.correlated_noise.independent_range_sigma",
-                correlated_noise.independent_range_sigma,
-                NOT_NEGATIVE,
-            ),
-            (
-                "sensor.correlated_noise.independent_range_sigma_per_meter",
-                correlated_noise.independent_range_sigma_per_meter,
-                NOT_NEGATIVE,
-            ),
+            number!(sensor.bearing_sigma, SENSOR_NOISE),
+            number!(in "sensor", correlated_noise.independent_range_sigma, NOT_NEGATIVE),
+            number!(in "sensor", correlated_noise.independent_range_sigma_per_meter, NOT_NEGATIVE),
             (
                 "sensor.correlated_noise.independent_range_sigma at one metre",
                 nearest_own_range_sigma,
                 SENSOR_NOISE,
             ),
-            (
-                "sensor.correlated_noise.independent_bearing_sigma",
-                correlated_noise.independent_bearing_sigma,
-                SENSOR_NOISE,
-            ),
-            (
-                "sensor.correlated_noise.common_range_sigma_per_meter",
-                correlated_noise.common_range_sigma_per_meter,
-                NOT_NEGATIVE,
-            ),
-            (
-                "sensor.correlated_noise.common_bearing_sigma",
-                correlated_noise.common_bearing_sigma,
-                NOT_NEGATIVE,
-            ),
-            ("filter.merging.separation", merging.min_separation, NOT_NEGATIVE),
-            ("filter.merging.n_sigmas", merging.n_sigmas, NOT_NEGATIVE),
-            ("sensor.sensor_range", sensor.sensor_range, THRESHOLD),
-            ("sensor.half_field_of_view", sensor.half_field_of_view, THRESHOLD),
-            ("velocity.linear_sigma", velocity.linear_sigma, NOT_NEGATIVE),
-            ("velocity.angular_sigma", velocity.angular_sigma, NOT_NEGATIVE),
-            ("velocity.turning_sigma", velocity.turning_sigma, NOT_NEGATIVE),
-            ("velocity.linear_sigma_per_meter", velocity.linear_sigma_per_meter, NOT_NEGATIVE),
-            ("velocity.angular_sigma_per_meter", velocity.angular_sigma_per_meter, NOT_NEGATIVE),
-            ("velocity.standing_factor", velocity.standing_factor, NOT_NEGATIVE),
-            ("velocity.speed_loss_in_turns", velocity.speed_loss_in_turns, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_meter",
-                increment.translation_variance_per_meter,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_meter", increment.heading_variance_per_meter, NOT_NEGATIVE),
-            ("increment.heading_variance_per_radian", increment.heading_variance_per_radian, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_step",
-                increment.translation_variance_per_step,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
-            ("filter.confirmation.min_detection_rate", filter.confirmation.min_detection_rate, SHARE),
-            ("unlabelled_confirmation.min_detection_rate", unlabelled_confirmation.min_detection_rate, SHARE),
+            number!(in "sensor", correlated_noise.independent_bearing_sigma, SENSOR_NOISE),
+            number!(in "sensor", correlated_noise.common_range_sigma_per_meter, NOT_NEGATIVE),
+            number!(in "sensor", correlated_noise.common_bearing_sigma, NOT_NEGATIVE),
+            number!(in "filter", merging.min_separation, NOT_NEGATIVE),
+            number!(in "filter", merging.n_sigmas, NOT_NEGATIVE),
+            number!(sensor.sensor_range, THRESHOLD),
+            number!(sensor.half_field_of_view, THRESHOLD),
+            number!(velocity_noise.linear_sigma, NOT_NEGATIVE),
+            number!(velocity_noise.angular_sigma, NOT_NEGATIVE),
+            number!(velocity_noise.turning_sigma, NOT_NEGATIVE),
+            number!(velocity_noise.linear_sigma_per_meter, NOT_NEGATIVE),
+            number!(velocity_noise.angular_sigma_per_meter, NOT_NEGATIVE),
+            number!(velocity_noise.standing_factor, NOT_NEGATIVE),
+            number!(velocity_noise.speed_loss_in_turns, NOT_NEGATIVE),
+            number!(increment_noise.translation_variance_per_meter, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_meter, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_radian, NOT_NEGATIVE),
+            number!(increment_noise.translation_variance_per_step, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_step, NOT_NEGATIVE),
+            number!(filter.confirmation.min_detection_rate, SHARE),
+            number!(unlabelled_confirmation.min_detection_rate, SHARE),
             ("filter.confirmation.n_detections", times_seen(&filter.confirmation), TIMES_SEEN),
-            ("filter.confirmation.restart_nis", filter.confirmation.restart_nis, THRESHOLD),
+            number!(filter.confirmation.restart_nis, THRESHOLD),
             ("unlabelled_confirmation.n_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
-            ("unlabelled_confirmation.restart_nis", unlabelled_confirmation.restart_nis, THRESHOLD),
+            number!(unlabelled_confirmation.restart_nis, THRESHOLD),
         ] {
             if !range.contains(&value) {
                 return Err(SlamError::Parameter { name, value, range: words });

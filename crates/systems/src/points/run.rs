@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use anyhow::{Result, bail};
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
-use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferenceTrajectory, TruePositions, align};
+use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePositions, align};
 use wayfix_sensor_log::{DetectionTarget, Record, RecordData, Stamp};
 use wayfix_slam_ekf::LandmarkId;
 
@@ -35,7 +35,7 @@ pub fn run(
     };
     let association = association(records, params.association)?;
     check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, RecordData::Detections(_))))?;
-    let truth = ReferenceTrajectory::from_records(records);
+    let truth = ReferencePath::from_records(records);
     let true_positions = TruePositions::from_records(records);
     let from =
         |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
@@ -70,12 +70,12 @@ pub fn run_on(
     let association = saved.association;
     let system = PointSystem::resume(params.clone(), saved)?;
     self::association(records, Some(association))?;
-    drive_through(system, ReferenceTrajectory::from_records(records), records, observe)
+    drive_through(system, ReferencePath::from_records(records), records, observe)
 }
 
 fn drive_through(
     system: PointSystem,
-    truth: ReferenceTrajectory,
+    truth: ReferencePath,
     records: &[Record],
     observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
@@ -137,7 +137,9 @@ fn fitted_start(mut pilot: PointSystem, records: &[Record], positions: &TruePosi
 }
 
 fn has_used_a_detection(events: &EventCounts) -> bool {
-    ["new_landmark", "accepted", "accepted_downweighted"].iter().any(|name| events.get(name) > 0)
+    ["new_landmark", "observation_accepted", "observation_downweighted"]
+        .iter()
+        .any(|name| events.get(name) > 0)
 }
 
 /// The first refusal and how many there were, or else what happened to the detections.

@@ -106,7 +106,7 @@ where
             }
         }
         for _ in &report.merges {
-            self.events.count("merged_landmark");
+            self.events.count("landmarks_merged");
         }
         Ok(report)
     }

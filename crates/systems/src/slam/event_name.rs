@@ -8,15 +8,15 @@ where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
     match outcome {
-        ObservationOutcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_downweighted",
-        ObservationOutcome::Accepted { .. } => "accepted",
-        ObservationOutcome::Rejected { .. } => "gated",
+        ObservationOutcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "observation_downweighted",
+        ObservationOutcome::Accepted { .. } => "observation_accepted",
+        ObservationOutcome::Rejected { .. } => "observation_gated",
         ObservationOutcome::Initialized { .. } => "new_landmark",
-        ObservationOutcome::Restarted { .. } => "restarted_landmark",
-        ObservationOutcome::Ambiguous => "ambiguous",
-        ObservationOutcome::Unlabelled => "unlabelled",
-        ObservationOutcome::Duplicate { .. } => "duplicate",
-        ObservationOutcome::Unusable => "unusable",
+        ObservationOutcome::Restarted { .. } => "landmark_restarted",
+        ObservationOutcome::Ambiguous => "observation_ambiguous",
+        ObservationOutcome::Unlabelled => "observation_unlabelled",
+        ObservationOutcome::Duplicate { .. } => "observation_duplicate",
+        ObservationOutcome::Unusable => "observation_unusable",
         _ => "other",
     }
 }

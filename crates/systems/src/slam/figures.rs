@@ -10,7 +10,8 @@ use wayfix_slam_ekf::{
 use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// Events that count a refused observation or record.
-const REJECTIONS: [&str; 4] = ["gated", "duplicate", "unusable", "record_refused"];
+const REJECTIONS: [&str; 4] =
+    ["observation_gated", "observation_duplicate", "observation_unusable", "record_refused"];
 
 /// The figures and events of a run, ready for the report; `of_map` are the figures of the kind of landmark.
 pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun
@@ -60,7 +61,7 @@ fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &m
     let Some(recorder) = recorder else { return };
     let free = recorder.unobservable_directions();
     summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
-    summary.metrics.push(Metric::new("n_free_directions", free.len() as f64, ""));
+    summary.metrics.push(Metric::new("n_unobservable_directions", free.len() as f64, ""));
     summary.notes.push(match free.as_slice() {
         [] => "Everything about the map is tied to the world.".to_owned(),
         free => {

@@ -1,5 +1,5 @@
 use nalgebra::{DefaultAllocator, Vector2};
-use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample, TruePositions};
+use wayfix_evaluation::errors::{ReferencePath, TrajectorySample, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
@@ -14,7 +14,7 @@ where
     /// The system in its last state.
     pub system: SlamSystem<F>,
     /// True poses, or those that another program corrected, where the log has them.
-    pub truth: ReferenceTrajectory,
+    pub truth: ReferencePath,
     /// True positions of the antenna, where the log has them.
     pub true_positions: TruePositions,
     /// The true map, where the log has it.

@@ -1,25 +1,21 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_evaluation::errors::ReferenceTrajectory;
+use wayfix_evaluation::errors::ReferencePath;
 use wayfix_sensor_log::Stamp;
 
 use crate::system::{EventCounts, TrueStartPose};
 
 /// Says where the start pose comes from, unless it is the truth at the start.
-pub(crate) fn warn_of_start(
-    events: &mut EventCounts,
-    known: Option<TrueStartPose>,
-    truth: &ReferenceTrajectory,
-) {
+pub(crate) fn warn_of_start(events: &mut EventCounts, known: Option<TrueStartPose>, truth: &ReferencePath) {
     match known {
         Some(TrueStartPose { seconds_late, .. }) if seconds_late > 0.0 => events.warn(
             "truth_begins_late",
             format!(
-                "the truth begins {seconds_late:.2} s after the first observation: odometry leads the start pose back from there (`start` sets it)"
+                "the truth begins {seconds_late:.2} s after the first observation: odometry leads the start pose back from there (`start_pose` sets it)"
             ),
         ),
         None if !truth.is_empty() => events.warn(
             "start_pose_unknown",
-            "no true pose tells where the run starts: it starts at (0, 0, 0), and figures are aligned ones only (`start` sets it)",
+            "no true pose tells where the run starts: it starts at (0, 0, 0), and figures are aligned ones only (`start_pose` sets it)",
         ),
         _ => {}
     }
@@ -36,7 +32,7 @@ pub(crate) fn warn_of_an_empty_map(events: &mut EventCounts, n_landmarks: usize)
 }
 
 /// Says when errors are differences from the poses of another program.
-pub(crate) fn warn_of_reference(events: &mut EventCounts, truth: &ReferenceTrajectory) {
+pub(crate) fn warn_of_reference(events: &mut EventCounts, truth: &ReferencePath) {
     if truth.is_estimate() {
         events.warn(
             "reference_is_another_estimate",
@@ -48,7 +44,7 @@ pub(crate) fn warn_of_reference(events: &mut EventCounts, truth: &ReferenceTraje
 /// Says when true poses have no time in common with the estimates.
 pub(crate) fn warn_of_no_overlap(
     events: &mut EventCounts,
-    truth: &ReferenceTrajectory,
+    truth: &ReferencePath,
     estimated: Option<(Stamp, Stamp)>,
 ) {
     let (Some((first, last)), Some((begin, end))) = (truth.span(), estimated) else { return };

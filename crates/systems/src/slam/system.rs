@@ -104,7 +104,7 @@ where
 {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         if self.resumed_at.is_some_and(|resumed_at| record.stamp <= resumed_at) {
-            self.estimator.events.count("before_resume");
+            self.estimator.events.count("record_before_resume");
             return Ok(());
         }
         self.taken_until = record.stamp;

@@ -9,9 +9,9 @@ use wayfix_sensor_log::{LogWarning, Stamp};
 /// use wayfix_sensor_log::Stamp;
 /// let mut events = EventCounts::default();
 /// events.at_record(7, Stamp::from_nanoseconds(5_000_000_000));
-/// events.count("accepted");
-/// events.refuse("unusable", "range 0 m".to_owned());
-/// assert_eq!((events.get("accepted"), events.get("unusable")), (1, 1));
+/// events.count("observation_accepted");
+/// events.refuse("observation_unusable", "range 0 m".to_owned());
+/// assert_eq!((events.get("observation_accepted"), events.get("observation_unusable")), (1, 1));
 /// assert_eq!(events.refusals()[0].to_string(), "record 7 at 5.000000000 s: range 0 m");
 /// ```
 #[derive(Clone, Debug, Default)]

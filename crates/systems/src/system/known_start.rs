@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_evaluation::errors::ReferenceTrajectory;
+use wayfix_evaluation::errors::ReferencePath;
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
 use super::HeldVelocity;
@@ -17,7 +17,7 @@ impl TrueStartPose {
     /// The true pose at `at`. If truth begins later, odometry extrapolates its first pose back to `at`.
     ///
     /// Returns `None` if no truth is usable or odometry does not cover the interval.
-    pub fn at(at: Stamp, truth: &ReferenceTrajectory, records: &[Record]) -> Option<Self> {
+    pub fn at(at: Stamp, truth: &ReferencePath, records: &[Record]) -> Option<Self> {
         if let Some(pose) = truth.at(at) {
             return Some(Self { pose, seconds_late: 0.0 });
         }
@@ -92,20 +92,19 @@ mod tests {
     fn truth_that_begins_late_is_led_back_by_odometry() {
         let odometry = [increment(0, 0.0), increment(1000, 1.0), increment(2000, 2.0)];
         let records = [&odometry[..], &[truth(1500, 7.0), truth(1600, 7.2)]].concat();
-        let track = ReferenceTrajectory::from_records(&records);
+        let track = ReferencePath::from_records(&records);
         let start = TrueStartPose::at(at(500), &track, &records).unwrap();
         assert!((start.pose.x() - (7.0 - 0.5 - 1.0)).abs() < 1e-12, "{start:?}");
         assert!((start.seconds_late - 1.0).abs() < 1e-12);
         assert_eq!(TrueStartPose::at(at(1500), &track, &records).unwrap().seconds_late, 0.0);
-        assert_eq!(TrueStartPose::at(at(500), &ReferenceTrajectory::default(), &records), None);
+        assert_eq!(TrueStartPose::at(at(500), &ReferencePath::default(), &records), None);
     }
 
     #[test]
     fn velocities_lead_back_as_well() {
         let data = RecordData::Velocity(Velocity { linear: 2.0, angular: 0.0 });
         let records = [Record { stamp: at(0), data }, truth(1500, 7.0), truth(1600, 7.2)];
-        let start =
-            TrueStartPose::at(at(500), &ReferenceTrajectory::from_records(&records), &records).unwrap();
+        let start = TrueStartPose::at(at(500), &ReferencePath::from_records(&records), &records).unwrap();
         assert!((start.pose.x() - 5.0).abs() < 1e-12, "{start:?}");
     }
 }

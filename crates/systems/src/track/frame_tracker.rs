@@ -5,17 +5,16 @@ use wayfix_visual_tracking::{
     TrackingError,
 };
 
+/// The target in a frame.
+type Estimated = Result<TargetEstimate, TrackingError>;
+
 /// A tracker of any method.
 pub trait FrameTracker {
     /// Processes the next image.
     ///
     /// # Errors
     /// Returns the errors of [`Tracker::track`].
-    fn track_frame(
-        &mut self,
-        picture: &RgbImage,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<TargetEstimate, TrackingError>;
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Estimated;
 
     /// Colour distribution of the target, for trackers that model it.
     fn colors(&self) -> Option<TargetColors> {
@@ -35,21 +34,13 @@ pub struct TargetColors {
 }
 
 impl FrameTracker for CorrelationTracker {
-    fn track_frame(
-        &mut self,
-        picture: &RgbImage,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<TargetEstimate, TrackingError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Estimated {
         self.track(picture, rng)
     }
 }
 
 impl FrameTracker for HeadTracker {
-    fn track_frame(
-        &mut self,
-        picture: &RgbImage,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<TargetEstimate, TrackingError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Estimated {
         self.track(picture, rng)
     }
 }
@@ -61,17 +52,13 @@ pub(super) struct ContourFrameTracker {
 }
 
 impl FrameTracker for ContourFrameTracker {
-    fn track_frame(
-        &mut self,
-        picture: &RgbImage,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<TargetEstimate, TrackingError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Estimated {
         self.tracker.track(picture, rng)
     }
 
     fn colors(&self) -> Option<TargetColors> {
         let colors = self.tracker.colors();
-        let variances = Matrix3::from_diagonal(&colors.axis_sigmas.map(|magnitude| magnitude * magnitude));
+        let variances = Matrix3::from_diagonal(&colors.axis_sigmas.map(|sigma| sigma * sigma));
         let covariance = colors.axes * variances * colors.axes.transpose();
         Some(TargetColors { space: self.space, mean: colors.mean, covariance })
     }

@@ -163,7 +163,7 @@ impl TrackSystem {
             }
             Ok(None) => {
                 self.without_estimate();
-                self.events.count("before_start");
+                self.events.count("record_before_start");
                 Ok(())
             }
             Err(reason) => {
@@ -229,8 +229,8 @@ impl TrackSystem {
             _ => {}
         }
         match (self.was_lost, lost) {
-            (false, true) => self.events.count("lost"),
-            (true, false) => self.events.count("found"),
+            (false, true) => self.events.count("target_lost"),
+            (true, false) => self.events.count("target_reacquired"),
             _ => {}
         }
         self.was_lost = lost;

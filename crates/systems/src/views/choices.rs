@@ -10,7 +10,8 @@ use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
     let certain = |trial: &ViewTrial| trial.report.steps_to_certainty.unwrap_or(trial.report.steps) as f64;
     let all = |trial: &ViewTrial| trial.report.steps as f64;
-    let mut metrics = vec![Metric::new("pairs", greedy.trials.len().min(informed.trials.len()) as f64, "")];
+    let mut metrics =
+        vec![Metric::new("n_paired_drives", greedy.trials.len().min(informed.trials.len()) as f64, "")];
     for (name, run) in [("greedy", greedy), ("informed", informed)] {
         let successes = run.trials.iter().filter(|trial| trial.succeeded()).count();
         let n_certain = run.trials.iter().filter(|trial| trial.report.steps_to_certainty.is_some()).count();

@@ -11,7 +11,7 @@ use crate::settings::over_defaults;
 /// ```
 /// use wayfix_systems::views::ViewsParams;
 /// let params = ViewsParams::from_toml("[navigator]\nmax_steps = 40")?;
-/// assert_eq!((params.navigator.max_steps, params.navigator.confirmations), (40, 3)); // the rest as it was
+/// assert_eq!((params.navigator.max_steps, params.navigator.n_confirmations), (40, 3)); // the rest as it was
 /// assert!(ViewsParams::from_toml("[navigator]\nmax_stesp = 40").is_err());
 /// # Ok::<(), toml::de::Error>(())
 /// ```

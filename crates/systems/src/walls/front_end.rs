@@ -182,7 +182,7 @@ impl WallFrontEnd {
         let cuts: Vec<Stamp> = reached.iter().map(|waiting| waiting.stamp).collect();
         let motions = self.odometry.cut(increment, stamp, &cuts);
         if !has_started {
-            estimator.events.count("before_start");
+            estimator.events.count("record_before_start");
             return Ok(());
         }
         let mut scans = reached.iter();

@@ -9,6 +9,7 @@ use wayfix_slam_ekf::{
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
 };
 
+use crate::settings::number;
 use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
 
 /// Everything that can be set for EKF-SLAM with walls.
@@ -182,48 +183,25 @@ impl WallSlamParams {
             self.association != AssociationRule::Known,
             "parameter association is known, but walls have no identities: use nn or jcbb"
         );
-        let WallSensor {
-            rho_sigma,
-            alpha_sigma,
-            max_wall_gap: largest_gap,
-            sensor_range,
-            half_field_of_view,
-        } = self.sensor;
-        let increment = &self.increment_noise;
+        let Self { sensor, keyframes, odometry_noise_per_scan, increment_noise, .. } = &self;
         for (name, value, (low, range)) in [
-            ("sensor.rho_sigma", rho_sigma, POSITIVE),
-            ("sensor.alpha_sigma", alpha_sigma, POSITIVE),
-            ("sensor.largest_gap", largest_gap, NOT_NEGATIVE),
-            ("sensor.sensor_range", sensor_range, POSITIVE),
-            ("sensor.half_field_of_view", half_field_of_view, POSITIVE),
+            number!(sensor.rho_sigma, POSITIVE),
+            number!(sensor.alpha_sigma, POSITIVE),
+            number!(sensor.max_wall_gap, NOT_NEGATIVE),
+            number!(sensor.sensor_range, POSITIVE),
+            number!(sensor.half_field_of_view, POSITIVE),
             ("min_wall_length", self.min_wall_length, NOT_NEGATIVE),
-            ("keyframes.min_distance", self.keyframes.min_distance, NOT_NEGATIVE),
-            ("keyframes.min_rotation", self.keyframes.min_rotation, NOT_NEGATIVE),
-            (
-                "odometry_noise_per_scan.translation_sigma",
-                self.odometry_noise_per_scan.translation_sigma,
-                NOT_NEGATIVE,
-            ),
-            (
-                "odometry_noise_per_scan.heading_sigma",
-                self.odometry_noise_per_scan.heading_sigma,
-                NOT_NEGATIVE,
-            ),
+            number!(keyframes.min_distance, NOT_NEGATIVE),
+            number!(keyframes.min_rotation, NOT_NEGATIVE),
+            number!(odometry_noise_per_scan.translation_sigma, NOT_NEGATIVE),
+            number!(odometry_noise_per_scan.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_meter",
-                increment.translation_variance_per_meter,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_meter", increment.heading_variance_per_meter, NOT_NEGATIVE),
-            ("increment.heading_variance_per_radian", increment.heading_variance_per_radian, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_step",
-                increment.translation_variance_per_step,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
+            number!(increment_noise.translation_variance_per_meter, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_meter, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_radian, NOT_NEGATIVE),
+            number!(increment_noise.translation_variance_per_step, NOT_NEGATIVE),
+            number!(increment_noise.heading_variance_per_step, NOT_NEGATIVE),
         ] {
             if !(low..=1e6).contains(&value) {
                 return Err(SlamError::Parameter { name, value, range }.into());
@@ -235,9 +213,12 @@ impl WallSlamParams {
         }
         if let Some(value) = self.laser_pose.iter().chain(&self.start_pose).flatten().find(|v| !v.is_finite())
         {
-            return Err(
-                SlamError::Parameter { name: "laser or start", value: *value, range: "finite" }.into()
-            );
+            return Err(SlamError::Parameter {
+                name: "laser_pose or start_pose",
+                value: *value,
+                range: "finite",
+            }
+            .into());
         }
         Ok(self)
     }

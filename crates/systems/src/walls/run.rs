@@ -1,6 +1,6 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample, TruePositions};
+use wayfix_evaluation::errors::{ReferencePath, TrajectorySample, TruePositions};
 use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
@@ -39,7 +39,7 @@ pub fn run(
         );
     }
     check_overlap(records, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
-    let track = ReferenceTrajectory::from_records_or_estimates(records);
+    let track = ReferencePath::from_records_or_estimates(records);
     let known = TrueStartPose::at(scan.stamp, &track, records).filter(|_| params.start_pose.is_none());
     let start = start_pose(params.start_pose, known);
     let laser = params.laser_pose.or_else(|| laser_mount(records));
@@ -72,13 +72,13 @@ pub fn run_on(
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
-    let track = ReferenceTrajectory::from_records_or_estimates(records);
+    let track = ReferencePath::from_records_or_estimates(records);
     drive_through(system, track, truth::true_walls(records), records, observe)
 }
 
 fn drive_through(
     system: WallSystem,
-    truth: ReferenceTrajectory,
+    truth: ReferencePath,
     true_map: Vec<TrueWall>,
     records: &[Record],
     observe: impl FnMut(RunStep<'_, WallSystem>),
@@ -91,7 +91,7 @@ fn drive_through(
         SlamRun { system, truth, true_positions, true_map, evaluated_until }.through(&records, observe);
     let stamped_estimates = run.system.stamped_estimates();
     if stamped_estimates.is_empty() {
-        let n_before = run.events().get("before_resume");
+        let n_before = run.events().get("record_before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
     let dead_reckoning: Vec<_> = stamped_estimates.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
@@ -102,7 +102,7 @@ fn drive_through(
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
     };
     if !samples.is_empty() && samples.iter().all(is_odometry) {
-        run.truth = ReferenceTrajectory::default();
+        run.truth = ReferencePath::default();
         run.events().warn(
             "reference_is_odometry",
             "the poses of the log are its odometry: there are no figures of accuracy",

@@ -145,7 +145,7 @@ impl ContourTrackerParams {
         for (what, value) in [
             ("background_odds", self.background_odds),
             ("edge_contrast", self.edge_contrast),
-            ("area_gain", self.area_extrapolation),
+            ("area_extrapolation", self.area_extrapolation),
         ] {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }

@@ -119,7 +119,7 @@ fn a_log_builds_its_map_and_a_saved_map_is_gone_on_with() {
         let outcome = log_run(&log, arguments);
         assert!(outcome.code == code && outcome.stderr.contains(why), "{arguments:?}: {}", outcome.stderr);
     };
-    let other = scratch.file("other.toml", "[views]\nn_harmonics = 8\n");
+    let other = scratch.file("other.toml", "[panorama_descriptor]\nn_harmonics = 8\n");
     refused(&["--map", map_name, "--params", other.to_str().unwrap()], 1, "n_harmonics = 16, here it is 8");
     let mut bytes = fs::read(&map).unwrap();
     bytes[300] ^= 4;

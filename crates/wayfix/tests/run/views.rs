@@ -200,11 +200,11 @@ fn invalid_parameters_and_options_are_refused_by_name() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));
     for (text, key) in [
-        ("[navigator]\nconfidence = 1.5", "confidence"),
-        ("[navigator]\nconfidenec = 0.5", "confidenec"),
-        ("[localizer]\nleak = nan", "leak"),
-        ("[whole_scene.noise]\npooling = 0.0", "pooling"),
-        ("[whole_scene]\nlights = []", "conditions"),
+        ("[navigator]\ngoal_confidence = 1.5", "goal_confidence"),
+        ("[navigator]\ngoal_confidenec = 0.5", "goal_confidenec"),
+        ("[localizer]\nkidnapping_probability = nan", "kidnapping_probability"),
+        ("[whole_scene_appearance.noise_covariance]\npooled_share = 0.0", "pooled_share"),
+        ("[whole_scene_appearance]\nlight_changes = []", "conditions"),
         ("navigator = 3", "navigator"),
     ] {
         let file = scratch.file("params.toml", text);

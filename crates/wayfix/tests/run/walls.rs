@@ -63,13 +63,14 @@ fn what_a_map_of_walls_cannot_know_is_named() {
     let log = office();
     let log = log.to_str().unwrap();
     let free = |arguments: &[&str]| {
-        metrics(&[&["--log", log, "--observability"], arguments].concat())["n_free_directions"].as_f64()
+        metrics(&[&["--log", log, "--observability"], arguments].concat())["n_unobservable_directions"]
+            .as_f64()
     };
     assert_eq!(free(&[]), Some(3.0));
     let path = folder.path().join("anchors.toml");
     fs::write(&path, "n_anchors = 1").unwrap();
     assert_eq!(free(&["--params", path.to_str().unwrap()]), Some(1.0), "along the one wall");
-    assert!(metrics(&["--log", log])["n_free_directions"].is_null());
+    assert!(metrics(&["--log", log])["n_unobservable_directions"].is_null());
 }
 
 #[test]
@@ -82,12 +83,12 @@ fn what_makes_no_sense_is_refused_by_name() {
     for (text, named) in [
         ("min_wall_length = nan", "min_wall_length"),
         ("[sensor]\nrho_sigma = -1.0", "rho_sigma"),
-        ("[lines]\nmin_points = 1", "min_points"),
+        ("[line_extraction]\nmin_points = 1", "min_points"),
         ("[sensor]\nrho = 1.0", "rho"),
         ("[sensor]\nsensor_range = nan", "sensor_range"),
         ("association = 'known'", "association"),
-        ("[increment]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
-        ("laser = [0.0, inf, 0.0]", "laser"),
+        ("[increment_noise]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
+        ("laser_pose = [0.0, inf, 0.0]", "laser_pose"),
         ("[scan_match]\nkernel_m = 0.0", "kernel_m"),
         ("[keyframes]\nmin_distance = -1.0", "keyframes.min_distance"),
         ("[odometry_noise_per_scan]\nheading_sigma = nan", "odometry_noise_per_scan.heading_sigma"),

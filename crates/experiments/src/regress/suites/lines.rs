@@ -4,6 +4,7 @@ use wayfix_line_extract::LineExtractionParams;
 use wayfix_sensor_log::OpenOptions;
 
 use super::super::PlannedJob;
+use crate::simplification::simplification;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     lines::{self, LineLog, LineSystem},
@@ -25,7 +26,7 @@ struct Settings {
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     match settings.n_chains {
-        Some(n_chains) => lines::simplification(n_chains, job.options.seed),
+        Some(n_chains) => simplification(n_chains, job.options.seed),
         None => walls(job, settings.params),
     }
 }

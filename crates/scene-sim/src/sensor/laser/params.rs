@@ -14,7 +14,7 @@ const MOST_BEAMS: usize = 100_000;
 /// use wayfix_scene_sim::sensor::LaserParams;
 /// let params = LaserParams { n_beams: 361, beam_step_rad: 0.5_f64.to_radians(), ..Default::default() };
 /// assert!(params.validate().is_ok());
-/// assert!(LaserParams { quantum_m: -0.01, ..params }.validate().is_err());
+/// assert!(LaserParams { range_resolution_m: -0.01, ..params }.validate().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserParams {

@@ -128,7 +128,7 @@ impl FirstPass {
         (self.mount, self.pose_mount) = match (difference, stated) {
             (Some(difference), _) if !are_one => {
                 let text = format!(
-                    "the two poses of each scan differ by {}: this is taken as the laser's mount; the parameter `laser` sets another",
+                    "the two poses of each scan differ by {}: this is taken as the laser's mount; the parameter `laser_pose` sets another",
                     shown(&difference)
                 );
                 report.warn("laser_mount_from_poses", text);
@@ -136,7 +136,7 @@ impl FirstPass {
             }
             (_, Some(stated)) if are_one && is_corrected => {
                 let text = format!(
-                    "PARAM lines put the laser at {}, but both poses of each corrected scan are the same: no mount is used; the parameter `laser` sets one",
+                    "PARAM lines put the laser at {}, but both poses of each corrected scan are the same: no mount is used; the parameter `laser_pose` sets one",
                     shown(&stated)
                 );
                 report.warn("laser_mount_contradicted", text);
@@ -144,7 +144,7 @@ impl FirstPass {
             }
             (_, Some(stated)) => {
                 let text = format!(
-                    "PARAM lines put the laser at {}: this is taken as its mount; the parameter `laser` sets another",
+                    "PARAM lines put the laser at {}: this is taken as its mount; the parameter `laser_pose` sets another",
                     shown(&stated)
                 );
                 report.warn("laser_mount_from_parameters", text);

@@ -1,3 +1,5 @@
+//! Polyline simplification: the convex-hull variant against plain Douglas-Peucker.
+
 use std::f64::consts::TAU;
 
 use anyhow::Result;
@@ -7,8 +9,8 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_line_extract::{PointDistance, douglas_peucker, simplify};
 
-use crate::system::Stopwatch;
 use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::system::Stopwatch;
 
 type Chain = Vec<Vector2<f64>>;
 
@@ -30,9 +32,9 @@ pub fn simplification(n_chains: u32, seed: u64) -> Result<ReportRun> {
     }
     let metrics = vec![
         Metric::new("n_chains", f64::from(n_chains), ""),
-        Metric::new("n_differ", f64::from(n_differ), ""),
-        Metric::new("kept_share", kept as f64 / points as f64, ""),
-        Metric::new("excess_m", excess, "m"),
+        Metric::new("n_chains_differ", f64::from(n_differ), ""),
+        Metric::new("kept_point_share", kept as f64 / points as f64, ""),
+        Metric::new("tolerance_excess_m", excess, "m"),
     ];
     let timings = vec![
         timed("simplify_zigzag_100000_ms", || simplify(&zigzag(100_000), 1e-6).map(drop))?,
