@@ -29,7 +29,7 @@ impl Default for KldParams {
 ///
 /// ```
 /// use wayfix_particle::{KldParams, KldSampling};
-/// let kld = KldSampling::new(KldParams { epsilon: 0.1, min: 10, ..KldParams::default() })?;
+/// let kld = KldSampling::new(KldParams { epsilon: 0.1, min_particles: 10, ..KldParams::default() })?;
 /// assert_eq!(kld.required(1), 10); // all in one bin: the fewest
 /// assert!((650..700).contains(&kld.required(101))); // χ² with 100 degrees of freedom at 0.99 is 135.8; over 2 ε
 /// # Ok::<(), wayfix_particle::ParticleError>(())

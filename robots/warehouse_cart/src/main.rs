@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..IncrementMotion::default()
     };
     let filter = SlamParams {
-        linearization: LinearizationPoint::FirstEstimates, // laps: the standard form would grow too sure of its heading
+        linearization_point: LinearizationPoint::FirstEstimates, // laps: the standard form would grow too sure of its heading
         confirmation: ConfirmationParams { n_detections: 3, max_missed: Some(10), ..ConfirmationParams::default() },
         ..SlamParams::default()
     };

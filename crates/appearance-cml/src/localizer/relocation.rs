@@ -43,7 +43,7 @@ pub struct RelocationParams {
     /// Way for which a break counts, m: whoever was carried should know by then where it is, and one that was none goes on to be a danger where
     /// doubt lasts. Default 20.
     pub break_way: f64,
-    /// [`AppearanceMapParams::match_share`](crate::AppearanceMapParams::match_share) for who is lost, from the start or after a break that did not come while it explored,
+    /// [`AppearanceMapParams::match_limit_fraction`](crate::AppearanceMapParams::match_limit_fraction) for who is lost, from the start or after a break that did not come while it explored,
     /// until it believes in a place: it has to be found by references that are further off, or have changed. Not less than that of the map. Default 0.5.
     pub match_share: f64,
     /// What it has to show without one. Default: half of the views over 25 m, because whole aisles look like others when their lamps are out.

@@ -16,12 +16,12 @@ pub enum RingOrientation {
 
 /// Where the ring of a raw omnidirectional image lies, and how it is unwrapped.
 ///
-/// The first column of the panorama looks along the image's x axis, to the right of the centre; the others follow as `sense` says, as
+/// The first column of the panorama looks along the image's x axis, to the right of the centre; the others follow as `azimuth_direction` says, as
 /// they are seen in the image (a mirror may reverse that in the world).
 ///
 /// ```
 /// use wayfix_appearance_cml::{OmnidirectionalRing, Panorama, RingOrientation, AzimuthDirection};
-/// let donut = OmnidirectionalRing { center: [4.5, 4.5], radii: [1.0, 4.0], sense: AzimuthDirection::Clockwise, up: RingOrientation::OutermostUp };
+/// let donut = OmnidirectionalRing { center: [4.5, 4.5], radii: [1.0, 4.0], azimuth_direction: AzimuthDirection::Clockwise, ring_orientation: RingOrientation::OutermostUp };
 /// let image = Panorama::from_rgb(10, 10, vec![7; 300])?; // any picture: a buffer of pixels
 /// let panorama = donut.unwrap_image(10, 10, image.pixels(), 16, 3)?;
 /// assert_eq!((panorama.n_columns(), panorama.n_rows()), (16, 3));

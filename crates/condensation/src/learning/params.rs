@@ -38,7 +38,7 @@ impl AppearanceLearningParams {
     ///
     /// ```
     /// use wayfix_condensation::AppearanceLearningParams;
-    /// assert_eq!(AppearanceLearningParams::online().lights.len(), 15);
+    /// assert_eq!(AppearanceLearningParams::online().light_changes.len(), 15);
     /// ```
     pub fn online() -> Self {
         let gammas = (-2..=2).map(|i| 2.0_f64.powf(f64::from(i) / 3.0));

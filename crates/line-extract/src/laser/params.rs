@@ -8,7 +8,7 @@ use crate::LineExtractionError;
 /// ```
 /// use wayfix_line_extract::{LineExtractionParams, SplitMethod};
 ///
-/// let params = LineExtractionParams { min_length_m: 1.0, split: SplitMethod::SplitAndMerge, ..LineExtractionParams::default() };
+/// let params = LineExtractionParams { min_length_m: 1.0, split_method: SplitMethod::SplitAndMerge, ..LineExtractionParams::default() };
 /// assert!(params.check().is_ok());
 /// assert!(LineExtractionParams { split_distance_m: -0.1, ..params }.check().is_err());
 /// ```

@@ -16,7 +16,7 @@
 //!     assert!(x >= 0.0 && y >= 0.0 && width > 40.0 && height > 40.0);
 //!     assert!(frame.visible.area() == frame.target.area(), "nothing stands before it");
 //! }
-//! let away = SyntheticFilm { incident: OcclusionEvent::Away, ..SyntheticFilm::named("head")? };
+//! let away = SyntheticFilm { occlusion: OcclusionEvent::Away, ..SyntheticFilm::named("head")? };
 //! assert!(away.frames()?.any(|frame| frame.target.area() == 0));
 //! # Ok::<(), wayfix_scene_sim::SimulationError>(())
 //! ```

@@ -66,8 +66,8 @@ pub enum UpdateOrder {
 /// use wayfix_slam_ekf::*;
 ///
 /// let look = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
-/// let robot = |map| {
-///     let params = SlamParams { map, ..SlamParams::default() };
+/// let robot = |covariance_update| {
+///     let params = SlamParams { covariance_update, ..SlamParams::default() };
 ///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
 ///     slam.update(&look, &mut KnownIds)?;
 ///     slam.predict(&IncrementMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;

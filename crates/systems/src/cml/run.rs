@@ -26,7 +26,7 @@ pub enum CmlTask {
 /// Start pose of the robot at the first view.
 #[derive(Clone, Debug)]
 pub enum StartPlace {
-    /// Near this pose, with the uncertainty [`CmlParams::start`].
+    /// Near this pose, with the uncertainty [`CmlParams::start_uncertainty`].
     Near(Pose2<f64>),
     /// At exactly this pose, which defines the frame of a new map.
     Exactly(Pose2<f64>),

@@ -15,7 +15,7 @@ use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOL
 /// use wayfix_systems::points::{PointSlamParams, RobotProfile};
 /// let params = PointSlamParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", RobotProfile::Generic)?;
 /// assert_eq!(params.filter.gate_probability, 0.99);
-/// assert_eq!(params.velocity, PointSlamParams::of(RobotProfile::Utias).velocity); // not named in the file
+/// assert_eq!(params.velocity_noise, PointSlamParams::of(RobotProfile::Utias).velocity_noise); // not named in the file
 /// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -9,7 +9,7 @@ use crate::settings::over_defaults;
 /// ```
 /// use wayfix_systems::track::TrackParams;
 /// let params = TrackParams::from_toml("[contour]\nn_samples = 50")?;
-/// assert_eq!((params.contour.n_samples, params.contour.adapts), (50, true)); // the rest as it was
+/// assert_eq!((params.contour.n_samples, params.contour.adapts_colors), (50, true)); // the rest as it was
 /// assert!(TrackParams::from_toml("[contour]\nn_smaples = 50").is_err());
 /// # Ok::<(), toml::de::Error>(())
 /// ```

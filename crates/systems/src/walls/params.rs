@@ -18,7 +18,7 @@ use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOL
 /// use wayfix_systems::walls::WallSlamParams;
 /// let params = WallSlamParams::from_toml("[sensor]\nrho_sigma = 0.05")?;
 /// assert_eq!(params.sensor.rho_sigma, 0.05);
-/// assert_eq!(params.lines, WallSlamParams::default().lines); // not named in the text
+/// assert_eq!(params.line_extraction, WallSlamParams::default().line_extraction); // not named in the text
 /// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

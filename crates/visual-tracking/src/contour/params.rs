@@ -41,7 +41,7 @@ pub struct ContourTrackerParams {
     pub anchored_share: f64,
     /// Share of the velocity that the colour state keeps, from 0 to 1. Default 0.5.
     pub velocity_retention: f64,
-    /// Noise of the colour state per picture: centroid (3), magnitudes (3), in units of the colour space, and angles (2) in radians.
+    /// Noise of the colour state per picture: centroid (3), axis deviations (3), in units of the colour space, and angles (2) in radians.
     /// Default 0.015 each, 0.006 each, 0.05 each.
     pub color_state_noise: [f64; 8],
     /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with

@@ -131,9 +131,9 @@ pub(super) fn in_other_light(space: ColorSpace, colors: &PrincipalColors) -> Vec
     let lit = |step: i32| {
         let gain = 3_f64.powf(f64::from(step) / f64::from(N_GAINS));
         let mut state = ColorState::at_rest(colors);
-        let (mean, magnitudes) = (black + (state.mean() - black) * gain, state.magnitudes() * gain);
+        let (mean, axis_sigmas) = (black + (state.mean() - black) * gain, state.axis_sigmas() * gain);
         state.value.fixed_rows_mut::<3>(0).copy_from(&mean);
-        state.value.fixed_rows_mut::<3>(3).copy_from(&magnitudes);
+        state.value.fixed_rows_mut::<3>(3).copy_from(&axis_sigmas);
         state
     };
     (-N_GAINS..=N_GAINS).map(lit).collect()
@@ -180,7 +180,7 @@ mod tests {
             // 3^(4/6) = 2.08, the step next to a gain of two.
             let Some(twice) = lit.get(10) else { continue };
             assert!((twice.mean() - of(2).mean).amax() < 0.03, "{space:?}");
-            assert!((twice.magnitudes() - of(2).axis_sigmas).amax() < 0.01, "{space:?}");
+            assert!((twice.axis_sigmas() - of(2).axis_sigmas).amax() < 0.01, "{space:?}");
         }
     }
 }

@@ -16,7 +16,7 @@ const TIE: f64 = 1.0 / (255.0 * 255.0 * 12.0);
 /// let line = [0.2, 0.4, 0.6].map(|red| Vector3::new(red, 0.5, 0.5));
 /// let colors = PrincipalColors::of(&line, &[1.0; 3], None)?;
 /// assert!((colors.mean - Vector3::new(0.4, 0.5, 0.5)).norm() < 1e-12);
-/// assert!((colors.magnitudes[0] - (0.08_f64 / 3.0).sqrt()).abs() < 1e-12 && colors.magnitudes[1] < 1e-9);
+/// assert!((colors.axis_sigmas[0] - (0.08_f64 / 3.0).sqrt()).abs() < 1e-12 && colors.axis_sigmas[1] < 1e-9);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +61,11 @@ impl PrincipalColors {
             Some(_) => matched(&eigen.eigenvectors, &before),
             None => in_falling_order(&eigen),
         };
-        let magnitudes = Vector3::from_fn(|i, _| {
+        let axis_sigmas = Vector3::from_fn(|i, _| {
             let axis = axes.column(i);
             axis.dot(&(covariance * axis)).max(0.0).sqrt()
         });
-        Ok(Self { mean, axis_sigmas: magnitudes, axes: Rotation3::from_matrix_unchecked(axes) })
+        Ok(Self { mean, axis_sigmas, axes: Rotation3::from_matrix_unchecked(axes) })
     }
 
     /// The angles $`θ, φ`$ that turn the leading axes of `previous` into these: $`θ`$ turns the first axis towards the second, $`φ`$ lifts
@@ -129,9 +129,9 @@ fn in_falling_order(eigen: &SymmetricEigen<f64, nalgebra::Const<3>>) -> Matrix3<
 mod tests {
     use super::*;
 
-    fn ellipsoid(axes: &Rotation3<f64>, magnitudes: [f64; 3]) -> Vec<Vector3<f64>> {
+    fn ellipsoid(axes: &Rotation3<f64>, axis_sigmas: [f64; 3]) -> Vec<Vector3<f64>> {
         let mean = Vector3::new(0.5, 0.4, 0.3);
-        let ends = [0, 1, 2].map(|i| axes.matrix().column(i) * magnitudes[i]);
+        let ends = [0, 1, 2].map(|i| axes.matrix().column(i) * axis_sigmas[i]);
         ends.into_iter().flat_map(|end| [mean + end, mean - end]).collect()
     }
 

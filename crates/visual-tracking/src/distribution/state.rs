@@ -2,7 +2,7 @@ use nalgebra::{Rotation3, SVector, Vector3};
 
 use super::{ColorWarp, PrincipalColors};
 
-/// Numbers of a colour distribution: centroid, three magnitudes, two angles.
+/// Numbers of a colour distribution: centroid, three axis deviations, two angles.
 pub const COLOR_DIM: usize = 8;
 
 /// $`[\mathbf m, \boldsymbol λ, θ, φ]`$.
@@ -20,7 +20,7 @@ pub type ColorVector = SVector<f64, COLOR_DIM>;
 /// let reference = PrincipalColors::of(&colors, &[1.0; 2], None)?;
 /// let mut brighter = ColorState::at_rest(&reference);
 /// brighter.value[0] += 0.1; // the centroid
-/// brighter.value[3] *= 2.0; // the first magnitude
+/// brighter.value[3] *= 2.0; // the deviation along the first axis
 /// let warped = brighter.warp_from(&reference).apply(&colors[1]);
 /// assert!((warped - Vector3::new(0.6, 0.5, 0.5)).norm() < 1e-9);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
@@ -48,7 +48,7 @@ impl ColorState {
     }
 
     /// Standard deviations along the axes.
-    pub fn magnitudes(&self) -> Vector3<f64> {
+    pub fn axis_sigmas(&self) -> Vector3<f64> {
         self.value.fixed_rows::<3>(3).into_owned()
     }
 
@@ -63,7 +63,7 @@ impl ColorState {
         let [theta, phi] = self.angles();
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), theta)
             * Rotation3::from_axis_angle(&Vector3::y_axis(), -phi);
-        let scales = reference.axis_sigmas.zip_map(&self.magnitudes(), ColorWarp::scale);
+        let scales = reference.axis_sigmas.zip_map(&self.axis_sigmas(), ColorWarp::scale);
         ColorWarp::new(&reference.mean, &self.mean(), &reference.axes, &turn, &scales)
     }
 

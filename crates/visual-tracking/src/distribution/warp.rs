@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Smaller magnitudes are those of a flat set, which is not stretched: one step of an 8-bit channel.
+/// Smaller axis deviations are those of a flat set, which is not stretched: one step of an 8-bit channel.
 const FLAT: f64 = 1.0 / 255.0;
 
 /// Maximum factor by which one step stretches or shrinks an axis.
@@ -26,7 +26,7 @@ impl ColorWarp {
         Self { linear, offset: to - linear * from }
     }
 
-    /// Factor that stretches an axis from magnitude `from` to `to`; bounded, and 1 for a flat axis.
+    /// Factor that stretches an axis from the deviation `from` to `to`; bounded, and 1 for a flat axis.
     pub(super) fn scale(from: f64, to: f64) -> f64 {
         (to.max(FLAT) / from.max(FLAT)).clamp(1.0 / MAX_SCALE, MAX_SCALE)
     }

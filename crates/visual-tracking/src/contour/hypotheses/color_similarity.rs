@@ -44,7 +44,7 @@ impl Scene<'_> {
 }
 
 fn covariance(colors: &PrincipalColors, gain: f64) -> Matrix3<f64> {
-    let variances = colors.axis_sigmas.map(|magnitude| (gain * magnitude).powi(2) + SAME * SAME);
+    let variances = colors.axis_sigmas.map(|sigma| (gain * sigma).powi(2) + SAME * SAME);
     let axes = colors.axes.matrix();
     axes * Matrix3::from_diagonal(&variances) * axes.transpose()
 }
