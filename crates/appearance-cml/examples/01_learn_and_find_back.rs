@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceError, AppearanceLocalizer, LocalizerParams, Panorama, PanoramaDescriptor, PanoramaFeatures,
+    AppearanceLocalizer, AppearanceMapError, LocalizerParams, Panorama, PanoramaDescriptor, PanoramaFeatures,
     PanoramaParams, Start,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
@@ -63,7 +63,7 @@ fn lap() -> impl Iterator<Item = Pose2<f64>> {
 }
 
 /// What the camera sees in a room of 8 m × 6 m with wallpaper; columns go to the right.
-fn look(pose: &Pose2<f64>) -> Result<Panorama, AppearanceError> {
+fn look(pose: &Pose2<f64>) -> Result<Panorama, AppearanceMapError> {
     let mut bytes = Vec::with_capacity(3 * COLUMNS * ROWS);
     for row in 0..ROWS {
         let slope = (0.5 - row as f64 / ROWS as f64).tan();

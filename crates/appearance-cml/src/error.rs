@@ -3,7 +3,7 @@ use wayfix_gaussian_core::GaussianError;
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum AppearanceError {
+pub enum AppearanceMapError {
     /// A reference with this number is in the map already.
     #[error("reference {id} is in the map already")]
     DuplicateReference {

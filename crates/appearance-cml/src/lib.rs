@@ -16,7 +16,7 @@ mod views;
 pub use archive::{
     MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
 };
-pub use error::AppearanceError;
+pub use error::AppearanceMapError;
 pub(crate) use fusion::update_heading;
 pub use fusion::{
     FusionParams, GaussianFusionRule, MixtureWeighting, PoseSource, PositionFix, combine, fuse,

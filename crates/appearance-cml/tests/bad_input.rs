@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceError, AppearanceLocalizer, LocalizerParams, PoseHypothesis, PoseSource, PositionFix, Start,
+    AppearanceLocalizer, AppearanceMapError, LocalizerParams, PoseHypothesis, PoseSource, PositionFix, Start,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
@@ -20,7 +20,7 @@ impl PoseSource for Weightless {
     fn hypotheses(
         &self,
         _: Option<&GaussianMixture<Pose2<f64>>>,
-    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
         Ok(vec![PoseHypothesis::new(f64::NAN, known(Pose2::new(0.0, 0.0, 0.0)))])
     }
 }
@@ -31,7 +31,7 @@ impl PoseSource for Singular {
     fn hypotheses(
         &self,
         _: Option<&GaussianMixture<Pose2<f64>>>,
-    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
         let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
         Ok(vec![PoseHypothesis::new(0.5, flat)])
     }
@@ -102,6 +102,6 @@ fn a_start_or_parameters_without_meaning_are_refused() {
     params.map.learning_rate = f64::NAN;
     assert!(matches!(
         Localizer::new(params, Start::Anywhere),
-        Err(AppearanceError::Parameter { what: "learning rate", .. })
+        Err(AppearanceMapError::Parameter { what: "learning rate", .. })
     ));
 }

@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceError, AppearanceIndex, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance,
+    AppearanceIndex, AppearanceMapError, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance,
     PanoramaBoundTable, PanoramaDescriptor, ReferenceId, ReferenceSearch,
 };
 
@@ -128,9 +128,9 @@ fn numbers_and_shapes_that_do_not_fit_are_refused() {
     index.insert(ReferenceId(7), view.clone()).unwrap();
     assert_eq!(
         index.insert(ReferenceId(7), view.clone()),
-        Err(AppearanceError::DuplicateReference { id: 7 })
+        Err(AppearanceMapError::DuplicateReference { id: 7 })
     );
-    assert_eq!(index.insert(ReferenceId(8), other.clone()), Err(AppearanceError::Incomparable { id: 8 }));
+    assert_eq!(index.insert(ReferenceId(8), other.clone()), Err(AppearanceMapError::Incomparable { id: 8 }));
     assert!(index.nearest(&other, 1).is_empty() && index.nearest(&view, 0).is_empty());
     for radius in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {
         assert!(index.within(&view, radius).is_empty(), "{radius}");

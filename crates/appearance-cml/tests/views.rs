@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceError, AzimuthDirection, Descriptor, Panorama, PanoramaDescriptor, PanoramaFeatures,
+    AppearanceMapError, AzimuthDirection, Descriptor, Panorama, PanoramaDescriptor, PanoramaFeatures,
     PanoramaParams,
 };
 
@@ -129,14 +129,17 @@ fn what_shows_nothing_is_refused() {
     let of = |bytes: Vec<u8>| features.describe(&Panorama::from_rgb(COLUMNS, ROWS, bytes).unwrap());
     for grey in [3, 77, 240] {
         let blank = of(vec![grey; COLUMNS * ROWS * 3]);
-        assert!(matches!(blank, Err(AppearanceError::BlankView { .. })), "{grey}: {blank:?}");
+        assert!(matches!(blank, Err(AppearanceMapError::BlankView { .. })), "{grey}: {blank:?}");
     }
     for grey in [0, 255] {
         let saturated = of(vec![grey; COLUMNS * ROWS * 3]);
-        assert!(matches!(saturated, Err(AppearanceError::SaturatedView { share: 1.0, .. })), "{saturated:?}");
+        assert!(
+            matches!(saturated, Err(AppearanceMapError::SaturatedView { share: 1.0, .. })),
+            "{saturated:?}"
+        );
     }
     let smaller = Panorama::from_rgb(COLUMNS, ROWS - 1, vec![7; COLUMNS * (ROWS - 1) * 3]).unwrap();
-    let expected = AppearanceError::ViewSize { expected: (COLUMNS, ROWS), got: (COLUMNS, ROWS - 1) };
+    let expected = AppearanceMapError::ViewSize { expected: (COLUMNS, ROWS), got: (COLUMNS, ROWS - 1) };
     assert_eq!(features.describe(&smaller), Err(expected));
 }
 
@@ -155,7 +158,7 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
     ] {
         let refused = PanoramaFeatures::new(params, COLUMNS, ROWS).unwrap_err();
-        assert!(matches!(refused, AppearanceError::Parameter { what, .. } if what == named), "{refused}");
+        assert!(matches!(refused, AppearanceMapError::Parameter { what, .. } if what == named), "{refused}");
     }
     for (columns, rows) in [(0, 0), (COLUMNS, 0), (0, ROWS), (30, ROWS)] {
         assert!(PanoramaFeatures::new(good, columns, rows).is_err(), "{columns} × {rows}");

@@ -8,7 +8,7 @@ use std::{hint::black_box, sync::Arc};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{
-    Camera, ColorMap, MapRenderer, PixelSpan, RenderError,
+    ColorMap, MapRenderer, PinholeCamera, PixelSpan, RenderError,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::Pose3;
@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let map: Arc<ColorMap> = Arc::new(toml::from_str(include_str!("../tests/field.toml"))?);
     // That of an ERS-7, and a camera of today.
     for (width, height) in [(208, 160), (640, 480)] {
-        let camera = Camera::from_field_of_view(width, height, 56.9_f64.to_radians(), 45.2_f64.to_radians())?;
+        let camera =
+            PinholeCamera::from_field_of_view(width, height, 56.9_f64.to_radians(), 45.2_f64.to_radians())?;
         let mut projector = MapRenderer::new(Arc::clone(&map), camera);
         let poses = poses();
 

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use wayfix_color_map::{
-    Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand,
+    ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PostBand,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::Pose3;
@@ -14,7 +14,7 @@ const COLORS: [&str; 4] = ["green", "white", "yellow", "pink"];
 const LETTERS: [char; 4] = ['.', 'w', 'Y', 'P'];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let camera = Camera::from_field_of_view(96, 40, 57_f64.to_radians(), 45_f64.to_radians())?;
+    let camera = PinholeCamera::from_field_of_view(96, 40, 57_f64.to_radians(), 45_f64.to_radians())?;
     let mut projector = MapRenderer::new(Arc::new(one_end()?), camera);
 
     // In the middle of the field, 20 cm up, looking 10° to the left of the goal and 5° down.

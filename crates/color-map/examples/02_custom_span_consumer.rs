@@ -4,7 +4,7 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PixelSpan, PostBand};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PixelSpan, PostBand};
 use wayfix_estimation_traits::{LieGroup, Pose3};
 
 /// Columns and rows that a colour reaches, ends excluded.
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         vec![PostBand { color: pink, from: -0.1, to: 0.0 }, PostBand { color: cyan, from: 0.0, to: 0.1 }];
     let beacon = ColoredShape::Post { x: 2.0, y: 0.0, radius: 0.05, bands };
     let map = ColorMap::new(vec!["pink".into(), "cyan".into()], vec![beacon])?;
-    let camera = Camera::new(208, 160, 192.0, 192.0, 104.0, 80.0)?;
+    let camera = PinholeCamera::new(208, 160, 192.0, 192.0, 104.0, 80.0)?;
 
     let mut bounds: BTreeMap<ColorId, Bounds> = BTreeMap::new();
     MapRenderer::new(Arc::new(map), camera).spans(&Pose3::identity(), &mut |span| {

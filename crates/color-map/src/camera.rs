@@ -14,9 +14,9 @@ const MAX_PIXELS: f64 = 1e6;
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::Camera;
+/// use wayfix_color_map::PinholeCamera;
 ///
-/// let camera = Camera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?; // an ERS-7
+/// let camera = PinholeCamera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?; // an ERS-7
 /// let ahead = camera.project(&Vector3::new(2.0, 0.0, 0.0)).unwrap();
 /// assert_eq!((ahead.x, ahead.y), (104.0, 80.0));
 /// let again = camera.project(&camera.ray(10.5, 20.5)).unwrap();
@@ -24,7 +24,7 @@ const MAX_PIXELS: f64 = 1e6;
 /// # Ok::<(), wayfix_color_map::RenderError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct PinholeCamera {
     width: u32,
     height: u32,
     fx: f64,
@@ -33,7 +33,7 @@ pub struct Camera {
     cy: f64,
 }
 
-impl Camera {
+impl PinholeCamera {
     /// A camera of `width` × `height` pixels with focal lengths and the optical axis' place, all in pixels.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl Camera {
 
     /// A camera with these fields of view between the outer edges of its outer pixels, rad, and its axis in the middle.
     /// # Errors
-    /// Returns the errors of [`Camera::new`]; the angles must lie in (0, π).
+    /// Returns the errors of [`PinholeCamera::new`]; the angles must lie in (0, π).
     pub fn from_field_of_view(
         width: u32,
         height: u32,
@@ -86,8 +86,8 @@ impl Camera {
     ///
     /// ```
     /// # use nalgebra::Vector3;
-    /// # use wayfix_color_map::Camera;
-    /// let camera = Camera::from_field_of_view(208, 160, 1.0, 0.8)?;
+    /// # use wayfix_color_map::PinholeCamera;
+    /// let camera = PinholeCamera::from_field_of_view(208, 160, 1.0, 0.8)?;
     /// let small = camera.shrunk(2)?;
     /// let (point, half) = (Vector3::new(2.0, 0.3, 0.1), small.project(&Vector3::new(2.0, 0.3, 0.1)).unwrap());
     /// assert!((camera.project(&point).unwrap() / 2.0 - half).norm() < 1e-12);

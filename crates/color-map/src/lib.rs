@@ -19,7 +19,7 @@
 //! ```
 //! use std::sync::Arc;
 //! use nalgebra::Vector3;
-//! use wayfix_color_map::{Camera, ColorId, ColorMap, MapRenderer, ColoredShape};
+//! use wayfix_color_map::{PinholeCamera, ColorId, ColorMap, MapRenderer, ColoredShape};
 //! use wayfix_estimation_traits::{LieGroup, Pose3};
 //!
 //! // A yellow board of 1 m x 0.6 m, two metres ahead of the camera.
@@ -31,7 +31,7 @@
 //! let map = Arc::new(ColorMap::new(vec!["yellow".into()], vec![board])?);
 //!
 //! // At a focal length of 100 pixels a metre at 2 m is 100 / 2 pixels: the board has 50 x 30.
-//! let camera = Camera::new(80, 60, 100.0, 100.0, 40.0, 30.0)?;
+//! let camera = PinholeCamera::new(80, 60, 100.0, 100.0, 40.0, 30.0)?;
 //! let mut projector = MapRenderer::new(Arc::clone(&map), camera);
 //! let labels = projector.labels(&Pose3::identity())?;
 //! assert_eq!(labels.count(ColorId(0)), 50 * 30);
@@ -48,7 +48,7 @@ mod shape;
 mod span;
 mod tree;
 
-pub use camera::Camera;
+pub use camera::PinholeCamera;
 pub use color::ColorId;
 pub use error::{ColorMapError, RenderError};
 pub use label_image::LabelImage;

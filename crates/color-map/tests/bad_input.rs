@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use wayfix_color_map::{
-    Camera, ColorId, ColorMap, ColorMapError, ColoredShape, LabelImage, MapRenderer, PostBand, RenderError,
+    ColorId, ColorMap, ColorMapError, ColoredShape, LabelImage, MapRenderer, PinholeCamera, PostBand,
+    RenderError,
     nalgebra::{Quaternion, UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
@@ -100,7 +101,7 @@ fn posts() {
 
 #[test]
 fn cameras() {
-    let camera = |width, height, fx, fy, cx, cy| Camera::new(width, height, fx, fy, cx, cy);
+    let camera = |width, height, fx, fy, cx, cy| PinholeCamera::new(width, height, fx, fy, cx, cy);
     assert!(camera(1, 16384, 1e-3, 1e6, -1e6, 1e6).is_ok());
     let bad = [
         camera(0, 10, 1.0, 1.0, 0.0, 0.0),
@@ -111,10 +112,10 @@ fn cameras() {
         camera(10, 10, 1.0, f64::INFINITY, 0.0, 0.0),
         camera(10, 10, 1.0, 1.0, f64::NAN, 0.0),
         camera(10, 10, 1.0, 1.0, 0.0, -2e6),
-        Camera::from_field_of_view(10, 10, 0.0, 1.0),
-        Camera::from_field_of_view(10, 10, 1.0, std::f64::consts::PI),
-        Camera::from_field_of_view(10, 10, f64::NAN, 1.0),
-        Camera::from_field_of_view(10, 10, 1e-300, 1.0),
+        PinholeCamera::from_field_of_view(10, 10, 0.0, 1.0),
+        PinholeCamera::from_field_of_view(10, 10, 1.0, std::f64::consts::PI),
+        PinholeCamera::from_field_of_view(10, 10, f64::NAN, 1.0),
+        PinholeCamera::from_field_of_view(10, 10, 1e-300, 1.0),
     ];
     for error in bad.map(Result::unwrap_err) {
         assert!(matches!(error, RenderError::Camera { .. }), "{error}");
@@ -125,7 +126,7 @@ fn cameras() {
 fn poses() {
     let map = map(vec![polygon(&[[1.0, -9.0, -9.0], [1.0, 9.0, -9.0], [1.0, 0.0, 9.0]])]).unwrap();
     let mut projector =
-        MapRenderer::new(Arc::new(map), Camera::from_field_of_view(20, 20, 1.0, 1.0).unwrap());
+        MapRenderer::new(Arc::new(map), PinholeCamera::from_field_of_view(20, 20, 1.0, 1.0).unwrap());
     let good = Pose3::identity();
     let quaternion = |w, i| UnitQuaternion::new_unchecked(Quaternion::new(w, i, 0.0, 0.0));
     let mut bad = Vec::new();
@@ -176,9 +177,9 @@ fn extremes() {
     .unwrap();
     let map = Arc::new(map);
     for camera in [
-        Camera::new(7, 5, 1e6, 1e6, 1e6, -1e6).unwrap(),
-        Camera::new(7, 5, 1e-6, 1e-6, 3.5, 2.5).unwrap(),
-        Camera::new(7, 5, 1e6, 1e-6, 3.5, 2.5).unwrap(),
+        PinholeCamera::new(7, 5, 1e6, 1e6, 1e6, -1e6).unwrap(),
+        PinholeCamera::new(7, 5, 1e-6, 1e-6, 3.5, 2.5).unwrap(),
+        PinholeCamera::new(7, 5, 1e6, 1e-6, 3.5, 2.5).unwrap(),
     ] {
         for translation in [Vector3::zeros(), Vector3::repeat(far), Vector3::new(0.5, 0.0, 0.0)] {
             let pose = Pose3 { translation, ..Pose3::identity() };
@@ -189,7 +190,7 @@ fn extremes() {
         }
     }
     // Straight ahead, the wall fills the image.
-    let camera = Camera::from_field_of_view(7, 5, 1.0, 1.0).unwrap();
+    let camera = PinholeCamera::from_field_of_view(7, 5, 1.0, 1.0).unwrap();
     let pose = Pose3 { translation: Vector3::new(1.0, 0.0, 0.0), ..Pose3::identity() };
     assert_eq!(MapRenderer::new(map, camera).labels(&pose).unwrap().count(ColorId(0)), 35);
 }
@@ -217,7 +218,7 @@ fn thousands_of_shapes() {
         polygon(&[[x, y, z], [x + 0.9, y, z + 0.1], [x + 0.9, y + 0.9, z + 0.1], [x, y + 0.9, z]])
     };
     let map = map((0..4096).map(tile).collect()).unwrap();
-    let camera = Camera::from_field_of_view(64, 48, 1.0, 0.8).unwrap();
+    let camera = PinholeCamera::from_field_of_view(64, 48, 1.0, 0.8).unwrap();
     let labels = MapRenderer::new(Arc::new(map), camera)
         .labels(&Pose3 { translation: Vector3::new(-20.0, 32.0, 30.0), ..Pose3::identity() })
         .unwrap();

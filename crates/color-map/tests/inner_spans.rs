@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{field, random_pose};
-use wayfix_color_map::{Camera, ColorId, LabelImage, MapRenderer};
+use wayfix_color_map::{ColorId, LabelImage, MapRenderer, PinholeCamera};
 
 /// The label of a pixel, if all pixels of the image within `margin` have it too.
 fn inner(labels: &LabelImage, column: u32, row: u32, margin: u32) -> Option<ColorId> {
@@ -26,7 +26,7 @@ fn exactly_the_pixels_away_from_edges_are_left() {
     for _ in 0..60 {
         // Widths on both sides of a word's 64 bits; margins beyond the image as well.
         let (width, height) = (rng.random_range(1..140), rng.random_range(1..60));
-        let camera = Camera::from_field_of_view(width, height, 1.0, 0.8).unwrap();
+        let camera = PinholeCamera::from_field_of_view(width, height, 1.0, 0.8).unwrap();
         let mut projector = MapRenderer::new(Arc::clone(&map), camera);
         let pose = random_pose(&mut rng, 2.0);
         let labels = projector.labels(&pose).unwrap();

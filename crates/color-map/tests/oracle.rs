@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{cast_labels, first_difference, random_camera, random_pose};
 use wayfix_color_map::{
-    Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand,
+    ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PostBand,
     nalgebra::{Quaternion, UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
@@ -136,7 +136,7 @@ fn on_a_grid() {
     });
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     // Pixel centres at multiples of 1/8 m on the front boards.
-    let camera = Camera::new(33, 33, 16.0, 16.0, 16.5, 16.5).unwrap();
+    let camera = PinholeCamera::new(33, 33, 16.0, 16.0, 16.5, 16.5).unwrap();
     let mut projector = MapRenderer::new(Arc::clone(&map), camera);
     for (y, z) in [(0.0, 0.0), (0.125, 0.0), (0.0, -0.25), (0.5, 0.125)] {
         let labels_at = |dy: f64, dz: f64, projector: &mut MapRenderer| {
@@ -174,7 +174,7 @@ fn no_gap_between_the_pieces_of_a_surface() {
         }
     }
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
-    let camera = Camera::new(97, 65, 16.0, 16.0, 48.5, 32.5).unwrap();
+    let camera = PinholeCamera::new(97, 65, 16.0, 16.0, 48.5, 32.5).unwrap();
     let mut projector = MapRenderer::new(map, camera);
     let mut rng = ChaCha8Rng::seed_from_u64(47);
     // Straight down on a camera whose rays hit multiples of 1/16 m, of 1/8 m, and between.
@@ -242,7 +242,7 @@ proptest! {
         let [w, i, j, k]: [f64; 4] = std::array::from_fn(|n| if signs[n] { turn[n] } else { -turn[n] });
         let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
         let pose = Pose3 { translation: Vector3::from(at), rotation };
-        let camera = Camera::from_field_of_view(70, 50, 1.3, 1.0).unwrap();
+        let camera = PinholeCamera::from_field_of_view(70, 50, 1.3, 1.0).unwrap();
         let map = Arc::new(map);
         let got = MapRenderer::new(Arc::clone(&map), camera).labels(&pose).unwrap();
         prop_assert_eq!(first_difference(&got, &cast_labels(&map, &camera, &pose)), None);

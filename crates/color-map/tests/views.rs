@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use wayfix_color_map::{
-    Camera, ColorId, ColorMap, ColoredShape, LabelImage, MapRenderer, PixelSpan, PostBand,
+    ColorId, ColorMap, ColoredShape, LabelImage, MapRenderer, PinholeCamera, PixelSpan, PostBand,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
@@ -29,8 +29,8 @@ fn rug(color: ColorId, x: [f64; 2], y: [f64; 2]) -> ColoredShape {
 }
 
 /// 100 pixels of focal length, the axis in the middle of 100 × 80 pixels.
-fn camera() -> Camera {
-    Camera::new(100, 80, 100.0, 100.0, 50.0, 40.0).expect("a valid camera")
+fn camera() -> PinholeCamera {
+    PinholeCamera::new(100, 80, 100.0, 100.0, 50.0, 40.0).expect("a valid camera")
 }
 
 fn see(map: &Arc<ColorMap>, pose: &Pose3<f64>) -> LabelImage {
@@ -141,7 +141,7 @@ fn a_post_is_not_seen_from_inside() {
 
 #[test]
 fn a_wide_image_is_covered_across_its_words() {
-    let camera = Camera::new(16384, 2, 100.0, 100.0, 8192.0, 1.0).unwrap();
+    let camera = PinholeCamera::new(16384, 2, 100.0, 100.0, 8192.0, 1.0).unwrap();
     let map =
         map(vec![board(RED, 1.0, [-200.0, 200.0], [-1.0, 1.0]), board(BLUE, 0.5, [-0.1, 0.1], [-1.0, 1.0])]);
     let labels = MapRenderer::new(map, camera).labels(&Pose3::identity()).unwrap();

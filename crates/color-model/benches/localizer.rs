@@ -9,9 +9,9 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{Camera, ColorMap, MapRenderer};
+use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_color_model::{
-    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingParams,
+    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingFilterParams,
     LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, Start, YuvImage,
     gather,
 };
@@ -26,7 +26,7 @@ const LIGHT: [[f64; 3]; 5] =
 
 fn main() {
     let map = Arc::new(field_map().expect("a constant map"));
-    let camera = Camera::from_field_of_view(208, 160, 0.993, 0.789).expect("an ERS-7");
+    let camera = PinholeCamera::from_field_of_view(208, 160, 0.993, 0.789).expect("an ERS-7");
     let body = Pose2::new(0.5, 0.2, 0.4);
     let mount = Pose3 {
         translation: Vector3::new(0.08, 0.0, 0.19),
@@ -76,7 +76,7 @@ fn main() {
 }
 
 /// The map in its light, with some noise, in front of grey.
-fn picture(map: &Arc<ColorMap>, camera: Camera, pose: &Pose3<f64>) -> YuvImage {
+fn picture(map: &Arc<ColorMap>, camera: PinholeCamera, pose: &Pose3<f64>) -> YuvImage {
     let labels = MapRenderer::new(Arc::clone(map), camera).labels(pose).expect("a finite pose");
     let paint = |(at, label): (usize, &Option<wayfix_color_map::ColorId>)| {
         let noise = (at * 7919 % 13) as f64 - 6.0;
@@ -91,7 +91,7 @@ fn bank() -> LightingBank {
         let mean = DVector::from_iterator(15, LIGHT.into_iter().flatten().map(|v| share * v));
         let covariance = DMatrix::from_fn(15, 15, |i, j| if i == j { 150.0 } else { 80.0 });
         let prior = Gaussian::new(mean, covariance).expect("positive definite");
-        LightingFilter::new(prior, LightingParams::default()).expect("valid")
+        LightingFilter::new(prior, LightingFilterParams::default()).expect("valid")
     };
     let chain = MarkovChain::sticky(2, 0.98).expect("a probability");
     LightingBank::new(vec![filter(0.5), filter(1.0)], chain).expect("two of each")

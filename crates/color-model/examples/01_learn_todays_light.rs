@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingParams};
+use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingFilterParams};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
 
@@ -13,7 +13,7 @@ fn kind_of_light(brightness: f64) -> Result<LightingFilter, Box<dyn std::error::
     let mean = DVector::from_vec(vec![1.1 * brightness, 90.0, 200.0, 0.6 * brightness, 170.0, 110.0]);
     let mut covariance = DMatrix::from_diagonal_element(6, 6, 400.0);
     (covariance[(0, 3)], covariance[(3, 0)]) = (360.0, 360.0);
-    Ok(LightingFilter::new(Gaussian::new(mean, covariance)?, LightingParams::default())?)
+    Ok(LightingFilter::new(Gaussian::new(mean, covariance)?, LightingFilterParams::default())?)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use wayfix_color_model::{
-    ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingParams, LightingTracker,
+    ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingFilterParams, LightingTracker,
 };
 use wayfix_gaussian_core::Gaussian;
 
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut covariance = DMatrix::from_diagonal_element(6, 6, 900.0);
     (covariance[(0, 3)], covariance[(3, 0)]) = (855.0, 855.0);
     let prior = Gaussian::new(DVector::from_vec(vec![100.0, 128.0, 128.0, 100.0, 128.0, 128.0]), covariance)?;
-    let ours = surprise(&mut LightingFilter::new(prior, LightingParams::default())?)?;
+    let ours = surprise(&mut LightingFilter::new(prior, LightingFilterParams::default())?)?;
 
     println!("unseen colour off by {own:.0} with a running mean, {ours:.0} with a joint filter");
     assert!(ours < 0.7 * own);

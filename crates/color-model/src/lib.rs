@@ -16,8 +16,8 @@ pub use error::ColorModelError;
 pub use frame::{PixelSums, PrefixSumImage};
 pub use lighting::{
     ColorDensity, ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
-    LightingBank, LightingDrift, LightingFilter, LightingParams, LightingTracker, SelectedLightingFilter,
-    UnseenColorRule,
+    LightingBank, LightingDrift, LightingFilter, LightingFilterParams, LightingTracker,
+    SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
     CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, LightErrorCorrelation, PixelLikelihood,

@@ -7,20 +7,20 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, random_prior};
 use wayfix_color_model::{
-    ColorMeans, ColorModelError, LightingBank, LightingDrift, LightingFilter, LightingParams,
+    ColorMeans, ColorModelError, LightingBank, LightingDrift, LightingFilter, LightingFilterParams,
     PixelClassifier, YuvImage, YuvStandard,
 };
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
 
-fn refused(prior: Gaussian<DVector<f64>>, params: LightingParams) -> ColorModelError {
+fn refused(prior: Gaussian<DVector<f64>>, params: LightingFilterParams) -> ColorModelError {
     LightingFilter::new(prior, params).expect_err("not a light")
 }
 
 #[test]
 fn priors_that_are_none_are_refused() {
     let unchecked = |n: usize, covariance| Gaussian::from_parts_unchecked(DVector::zeros(n), covariance);
-    let params = LightingParams::default();
+    let params = LightingFilterParams::default();
     for n in [0, 1, 4, 3 * 257] {
         let error = refused(unchecked(n, DMatrix::identity(n, n)), params);
         assert!(matches!(error, ColorModelError::Dimension { got, .. } if got == n), "{n}: {error}");
@@ -46,16 +46,19 @@ fn priors_that_are_none_are_refused() {
 #[test]
 fn parameters_without_a_meaning_are_refused() {
     let prior = common_gain(&BRIGHT, 0.3);
-    let good = LightingParams::default();
+    let good = LightingFilterParams::default();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
         let noise = Vector3::new(1.0, bad, 1.0);
-        refused(prior.clone(), LightingParams { pixel_color_variance: noise, ..good });
-        refused(prior.clone(), LightingParams { mean_color_variance: noise, ..good });
-        refused(prior.clone(), LightingParams { lighting_drift: LightingDrift::TowardsPrior(bad), ..good });
+        refused(prior.clone(), LightingFilterParams { pixel_color_variance: noise, ..good });
+        refused(prior.clone(), LightingFilterParams { mean_color_variance: noise, ..good });
+        refused(
+            prior.clone(),
+            LightingFilterParams { lighting_drift: LightingDrift::TowardsPrior(bad), ..good },
+        );
         if !(0.0..1e12).contains(&bad) {
             refused(
                 prior.clone(),
-                LightingParams { lighting_drift: LightingDrift::RandomWalk(noise), ..good },
+                LightingFilterParams { lighting_drift: LightingDrift::RandomWalk(noise), ..good },
             );
         }
     }
@@ -64,7 +67,7 @@ fn parameters_without_a_meaning_are_refused() {
 #[test]
 fn what_is_refused_leaves_the_light_as_it_was() {
     let prior = common_gain(&BRIGHT, 0.3);
-    let mut light = filter(prior.clone(), LightingParams::default());
+    let mut light = filter(prior.clone(), LightingFilterParams::default());
     light.update(&means(prior.mean(), 0b00110)).unwrap();
     let before = (light.mean().clone(), light.covariance().clone());
     for seconds in [-0.04, f64::NAN, f64::INFINITY] {
@@ -103,11 +106,11 @@ fn hostile_steps_leave_every_colour_a_finite_density() {
             LightingDrift::RandomWalk(Vector3::repeat(10.0_f64.powi(rng.random_range(-12..12))))
         };
         let noise = Vector3::from_fn(|_, _| 10.0_f64.powi(rng.random_range(-4..8)));
-        let params = LightingParams {
+        let params = LightingFilterParams {
             pixel_color_variance: noise,
             mean_color_variance: noise,
             lighting_drift: drift,
-            ..LightingParams::default()
+            ..LightingFilterParams::default()
         };
         let mut light = filter(prior, params);
         for _ in 0..1000 {
@@ -129,7 +132,7 @@ fn hostile_steps_leave_every_colour_a_finite_density() {
 #[test]
 fn banks_that_do_not_fit_are_refused() {
     let chain = |n| MarkovChain::sticky(n, 0.9).unwrap();
-    let light = |n| filter(common_gain(&BRIGHT[..n], 0.3), LightingParams::default());
+    let light = |n| filter(common_gain(&BRIGHT[..n], 0.3), LightingFilterParams::default());
     assert!(LightingBank::new(vec![], chain(1)).is_err());
     assert!(LightingBank::new(vec![light(5)], chain(2)).is_err());
     assert!(LightingBank::new(vec![light(5), light(4)], chain(2)).is_err());

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, noisy, random_prior};
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{LightingDrift, LightingFilter, LightingParams, UnseenColorRule};
+use wayfix_color_model::{LightingDrift, LightingFilter, LightingFilterParams, UnseenColorRule};
 use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
 
 const WALK: LightingDrift = LightingDrift::RandomWalk(Vector3::new(4.0, 1.0, 1.0));
@@ -26,7 +26,7 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
     let mut rng = ChaCha8Rng::seed_from_u64(401);
     for n_colors in [1, 2, 5, 9] {
         let prior = random_prior(n_colors, &mut rng);
-        let params = LightingParams { lighting_drift: WALK, ..LightingParams::default() };
+        let params = LightingFilterParams { lighting_drift: WALK, ..LightingFilterParams::default() };
         let mut ours = filter(prior.clone(), params);
         let seconds = 0.04;
         let walk = DVector::from_fn(3 * n_colors, |i, _| [4.0, 1.0, 1.0][i % 3] * seconds);
@@ -56,7 +56,7 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
 #[test]
 fn colour_densities_are_covariance_blocks_plus_pixel_noise() {
     let prior = random_prior(5, &mut ChaCha8Rng::seed_from_u64(402));
-    let light = filter(prior.clone(), LightingParams::default());
+    let light = filter(prior.clone(), LightingFilterParams::default());
     for (color, density) in light.colors().enumerate() {
         let block = prior.covariance().fixed_view::<3, 3>(3 * color, 3 * color);
         assert_eq!((density.covariance - block)[(1, 0)], 0.0);
@@ -81,13 +81,13 @@ fn only_regression_shrinks_unseen_colours() {
     }
     let prior = wayfix_gaussian_core::Gaussian::new(support::stacked(&BRIGHT), covariance)
         .expect("valid by construction");
-    let still = LightingParams {
+    let still = LightingFilterParams {
         lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
-        ..LightingParams::default()
+        ..LightingFilterParams::default()
     };
     let mut exact = filter(prior.clone(), still);
     let mut regressing =
-        filter(prior.clone(), LightingParams { unseen_colors: UnseenColorRule::Regress, ..still });
+        filter(prior.clone(), LightingFilterParams { unseen_colors: UnseenColorRule::Regress, ..still });
     let before = volume(&exact, 4);
     let n_images = 50;
     for _ in 0..n_images {
@@ -104,13 +104,13 @@ fn only_regression_shrinks_unseen_colours() {
 #[test]
 fn an_unseen_colour_keeps_what_its_correlations_leave_open() {
     let prior = common_gain(&BRIGHT, 0.3);
-    let still = LightingParams {
+    let still = LightingFilterParams {
         lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
-        ..LightingParams::default()
+        ..LightingFilterParams::default()
     };
     let (mut exact, mut regressing) = (
         filter(prior.clone(), still),
-        filter(prior.clone(), LightingParams { unseen_colors: UnseenColorRule::Regress, ..still }),
+        filter(prior.clone(), LightingFilterParams { unseen_colors: UnseenColorRule::Regress, ..still }),
     );
     // As many looks at the other four as make them certain.
     for _ in 0..10_000 {
@@ -133,8 +133,9 @@ fn an_unseen_colour_keeps_what_its_correlations_leave_open() {
 fn printed_and_exact_filter_agree_when_all_colours_are_seen() {
     let mut rng = ChaCha8Rng::seed_from_u64(403);
     let prior = random_prior(5, &mut rng);
-    let mut exact = filter(prior.clone(), LightingParams::default());
-    let regress = LightingParams { unseen_colors: UnseenColorRule::Regress, ..LightingParams::default() };
+    let mut exact = filter(prior.clone(), LightingFilterParams::default());
+    let regress =
+        LightingFilterParams { unseen_colors: UnseenColorRule::Regress, ..LightingFilterParams::default() };
     let mut regressing = filter(prior.clone(), regress);
     for light in [&mut exact, &mut regressing] {
         light.predict(0.1).expect("valid by construction");
@@ -146,9 +147,9 @@ fn printed_and_exact_filter_agree_when_all_colours_are_seen() {
 #[test]
 fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
     let mut rng = ChaCha8Rng::seed_from_u64(404);
-    let still = LightingParams {
+    let still = LightingFilterParams {
         lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
-        ..LightingParams::default()
+        ..LightingFilterParams::default()
     };
     let (n_venues, n_images) = (400, 20);
     let mut nees = 0.0;
@@ -174,8 +175,10 @@ fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
 fn five_hundred_frames_without_a_colour_never_make_it_surer() {
     let prior = common_gain(&BRIGHT, 0.3);
     for drift in [WALK, LightingDrift::TowardsPrior(5.0)] {
-        let mut light =
-            filter(prior.clone(), LightingParams { lighting_drift: drift, ..LightingParams::default() });
+        let mut light = filter(
+            prior.clone(),
+            LightingFilterParams { lighting_drift: drift, ..LightingFilterParams::default() },
+        );
         light.update(&means(&(prior.mean() * 0.8), 0)).expect("valid by construction");
         let nothing = means(prior.mean(), 0b11111);
         for _ in 0..500 {
@@ -186,7 +189,7 @@ fn five_hundred_frames_without_a_colour_never_make_it_surer() {
                 |(now, then): (wayfix_color_model::ColorDensity, &f64)| now.covariance.determinant() > *then;
             assert!(light.colors().zip(&before).all(wider));
         }
-        let prior = filter(prior.clone(), LightingParams::default());
+        let prior = filter(prior.clone(), LightingFilterParams::default());
         for (now, prior) in light.colors().zip(prior.colors()) {
             let ratio = now.covariance.determinant() / prior.covariance.determinant();
             match drift {
@@ -202,7 +205,7 @@ fn five_hundred_frames_without_a_colour_never_make_it_surer() {
 fn drift_depends_on_the_time_and_not_on_the_number_of_steps() {
     let prior = common_gain(&BRIGHT, 0.3);
     for drift in [WALK, LightingDrift::TowardsPrior(3.0)] {
-        let params = LightingParams { lighting_drift: drift, ..LightingParams::default() };
+        let params = LightingFilterParams { lighting_drift: drift, ..LightingFilterParams::default() };
         let mut once = filter(prior.clone(), params);
         once.update(&means(&(prior.mean() * 0.9), 0b01100)).expect("valid by construction");
         let mut often = once.clone();

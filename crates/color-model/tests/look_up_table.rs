@@ -7,8 +7,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, normal};
 use wayfix_color_model::{
-    BackgroundColorModel, ColorDensity, ColorLookUpTable, LightingFilter, LightingParams, PixelClassifier,
-    PixelLikelihoodParams, YuvImage, find_blobs,
+    BackgroundColorModel, ColorDensity, ColorLookUpTable, LightingFilter, LightingFilterParams,
+    PixelClassifier, PixelLikelihoodParams, YuvImage, find_blobs,
 };
 
 /// A view of the field as a cheap camera has it: patches of the five colours and of clutter, shaded, vignetted, blurred at edges, with noise.
@@ -41,7 +41,7 @@ fn frame(light: &LightingFilter, rng: &mut ChaCha8Rng) -> YuvImage {
 }
 
 fn light(gain: f64) -> LightingFilter {
-    let mut light = filter(common_gain(&BRIGHT, 0.3), LightingParams::default());
+    let mut light = filter(common_gain(&BRIGHT, 0.3), LightingFilterParams::default());
     light.update(&means(&(support::stacked(&BRIGHT) * gain), 0)).expect("valid by construction");
     light
 }

@@ -6,8 +6,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::ColorId;
 use wayfix_color_model::{
-    ColorMeans, LightingFilter, LightingParams, LightingPriorError, LightingPriors, PooledPixelVariance,
-    PriorLearningParams, TrainingVenue, learn_priors, split_by_brightness,
+    ColorMeans, LightingFilter, LightingFilterParams, LightingPriorError, LightingPriors,
+    PooledPixelVariance, PriorLearningParams, TrainingVenue, learn_priors, split_by_brightness,
 };
 
 const COLORS: [&str; 3] = ["green", "white", "pink"];
@@ -51,7 +51,7 @@ fn venues_are_split_where_the_light_is() {
 fn only_the_joint_prior_predicts_an_unseen_colour() {
     let rng = &mut ChaCha8Rng::seed_from_u64(12);
     let joint = learn_priors(&colors(), &venues(rng), 2, &PriorLearningParams::default(), rng).unwrap();
-    let params = LightingParams {
+    let params = LightingFilterParams {
         pixel_color_variance: joint.pixel_color_variance(),
         mean_color_variance: joint.mean_color_variance(),
         ..Default::default()

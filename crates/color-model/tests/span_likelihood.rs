@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PostBand};
 use wayfix_color_model::{
     CameraPoseLikelihood, ColorDensity, ColorModelError, LightErrorCorrelation, PixelLikelihood,
     PixelLikelihoodParams, PixelSpanLikelihood, PrefixSumImage, YuvImage,
@@ -46,8 +46,8 @@ fn field() -> Arc<ColorMap> {
     Arc::new(ColorMap::new(colors, shapes).expect("valid by construction"))
 }
 
-fn camera() -> Camera {
-    Camera::from_field_of_view(COLUMNS, ROWS, 1.0, 0.8).expect("valid by construction")
+fn camera() -> PinholeCamera {
+    PinholeCamera::from_field_of_view(COLUMNS, ROWS, 1.0, 0.8).expect("valid by construction")
 }
 
 /// Smooth and noisy at once, so that regions have means as well as scatter.

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, noisy, stacked};
 use wayfix_color_model::{
     ColorMeans, ColorModelError, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
-    LightingBank, LightingDrift, LightingFilter, LightingParams, LightingTracker,
+    LightingBank, LightingDrift, LightingFilter, LightingFilterParams, LightingTracker,
 };
 use wayfix_gaussian_core::moment_matched;
 use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
@@ -22,7 +22,7 @@ fn dark() -> Vec<[f64; 3]> {
 }
 
 fn bank() -> LightingBank {
-    let light = |colors: &[[f64; 3]]| filter(common_gain(colors, 0.15), LightingParams::default());
+    let light = |colors: &[[f64; 3]]| filter(common_gain(colors, 0.15), LightingFilterParams::default());
     LightingBank::new(
         vec![light(&dark()), light(&BRIGHT)],
         MarkovChain::sticky(2, 0.98).expect("valid by construction"),
@@ -80,7 +80,10 @@ fn members_are_drawn_as_often_as_they_are_probable() {
 /// One filter whose prior covers both lights.
 fn single() -> LightingFilter {
     let priors: Vec<_> = bank().members().iter().map(|light| light.prior().clone()).collect();
-    filter(moment_matched(&[0.5, 0.5], &priors).expect("valid by construction"), LightingParams::default())
+    filter(
+        moment_matched(&[0.5, 0.5], &priors).expect("valid by construction"),
+        LightingFilterParams::default(),
+    )
 }
 
 fn trackers() -> Vec<(&'static str, Box<dyn LightingTracker>)> {
@@ -100,7 +103,7 @@ fn error_of_pink(tracker: &dyn LightingTracker, truth: &DVector<f64>) -> f64 {
 
 #[test]
 fn switching_filters_predict_a_colour_unseen_since_the_switch() {
-    let params = LightingParams::default();
+    let params = LightingFilterParams::default();
     let mut rng = ChaCha8Rng::seed_from_u64(422);
     let lights: Vec<DVector<f64>> =
         bank().members().iter().map(|light| light.prior().sampler().sample(&mut rng)).collect();
@@ -134,7 +137,7 @@ fn switching_filters_predict_a_colour_unseen_since_the_switch() {
 
 #[test]
 fn without_switches_one_light_is_a_kalman_filter_for_all() {
-    let only = filter(common_gain(&BRIGHT, 0.15), LightingParams::default());
+    let only = filter(common_gain(&BRIGHT, 0.15), LightingFilterParams::default());
     let bank = LightingBank::new(vec![only.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(423);
     let mut plain = only;
@@ -192,7 +195,7 @@ fn a_walk_makes_the_trackers_as_wide_as_the_filter() {
     let walk = LightingDrift::RandomWalk(nalgebra::Vector3::new(4.0, 1.0, 1.0));
     let light = filter(
         common_gain(&BRIGHT, 0.15),
-        LightingParams { lighting_drift: walk, ..LightingParams::default() },
+        LightingFilterParams { lighting_drift: walk, ..LightingFilterParams::default() },
     );
     let bank = LightingBank::new(vec![light.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
     let mut tracker = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default()).unwrap();

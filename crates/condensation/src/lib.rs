@@ -19,8 +19,8 @@ mod navigation;
 mod normalization;
 
 pub use discrete::{
-    BestState, DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid, LatticeAxis,
-    Maneuver, MeasurementEvidence, MeasurementOutcome, PlaceGraph, PlaceGraphMove, PositionGrid,
+    DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid, LatticeAxis, Maneuver,
+    MeasurementEvidence, MeasurementOutcome, MostProbableState, PlaceGraph, PlaceGraphMove, PositionGrid,
     SlipProbabilities, SparseTransition, StateLattice, StateSpace, TransitionModel,
 };
 pub use error::CondensationError;

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_evaluation::plot::{
-    AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, PlotError,
-    PlotSeries, TimesPlot,
+    AxisScale, ConsistencyPlot, EstimatedLandmark, LinePlot, MapPlot, PlotError, PlotSeries, PoseErrorPlot,
+    PoseErrorSample, StepTimesPlot,
 };
 use wayfix_evaluation::report::{MachineInfo, Metric, Report, ReportRun, ReportSuite, table};
 
@@ -36,7 +36,7 @@ fn invented_run(n: u64, seed: u64) -> Result<ReportRun, PlotError> {
     // Four uniform numbers give a bell that is good enough for a picture.
     let mut bell = move || (0..4).map(|_| rng.random_range(-0.87..0.87)).sum::<f64>();
     let (mut map, mut error, mut nees, mut times) =
-        (MapPlot::default(), ErrorPlot::default(), Vec::new(), Vec::new());
+        (MapPlot::default(), PoseErrorPlot::default(), Vec::new(), Vec::new());
     let (mut drift, mut slow) = ([0.0; 2], [0.0; 3]);
     for k in 0..N_STEPS {
         let t = k as f64 * 0.1;
@@ -53,7 +53,7 @@ fn invented_run(n: u64, seed: u64) -> Result<ReportRun, PlotError> {
         map.truth.push(truth);
         map.estimate.push((truth.0 + slow[0], truth.1 + slow[1]));
         map.dead_reckoning.push((truth.0 + drift[0], truth.1 + drift[1]));
-        error.samples.push(ErrorSample { t, error: slow, sigma });
+        error.samples.push(PoseErrorSample { t, error: slow, sigma });
         nees.push((t, slow.iter().zip(sigma).map(|(e, s)| (e / s).powi(2)).sum()));
         times.push((
             k as f64,
@@ -86,7 +86,7 @@ fn invented_run(n: u64, seed: u64) -> Result<ReportRun, PlotError> {
         window: 100,
         scale: if n.is_multiple_of(2) { AxisScale::Linear } else { AxisScale::Log10 },
     };
-    let lines = LinesPlot {
+    let lines = LinePlot {
         title: "Cost of an update".to_owned(),
         x_label: "landmarks".to_owned(),
         y_label: "multiplications".to_owned(),
@@ -103,11 +103,11 @@ fn invented_run(n: u64, seed: u64) -> Result<ReportRun, PlotError> {
         map.draw()?,
         error.draw()?,
         consistency.draw()?,
-        TimesPlot { points: times, ..TimesPlot::default() }.draw()?,
+        StepTimesPlot { points: times, ..StepTimesPlot::default() }.draw()?,
     ];
     if n == 3 {
         figures
-            .extend([lines.draw()?, LinesPlot { title: "Empty".to_owned(), ..LinesPlot::default() }.draw()?]);
+            .extend([lines.draw()?, LinePlot { title: "Empty".to_owned(), ..LinePlot::default() }.draw()?]);
     }
     Ok(ReportRun {
         name: format!("invented-hall-{}", n + 1),

@@ -1,8 +1,8 @@
 //! What the SVG of a plot shows, measured in the SVG itself.
 
 use wayfix_evaluation::plot::{
-    AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, PlotSeries,
-    SvgPlot, TimesPlot,
+    AxisScale, ConsistencyPlot, EstimatedLandmark, LinePlot, MapPlot, PlotSeries, PoseErrorPlot,
+    PoseErrorSample, StepTimesPlot, SvgPlot,
 };
 
 /// The backend draws in tenths of a pixel.
@@ -87,7 +87,7 @@ fn one_sample_among_many_stays_visible() {
         (0..200_000).map(|k| (f64::from(k), (f64::from(k) * 0.3).sin())).collect();
     points[123_456].1 = 9.0;
     let picture =
-        LinesPlot { series: vec![PlotSeries::new("s", points)], ..LinesPlot::default() }.draw().unwrap();
+        LinePlot { series: vec![PlotSeries::new("s", points)], ..LinePlot::default() }.draw().unwrap();
     let lines = shapes(&picture, "polyline", "ink-0");
     let (_, height) = size(lines.iter().max_by_key(|line| line.len()).unwrap());
     // From −1 to 9 with 5 % of room above and below, in a panel of 220 px.
@@ -102,7 +102,7 @@ fn all_plots(values: &[f64]) -> Vec<SvgPlot> {
         position: *place,
         covariance: [[place.0, place.1], [place.1, place.0]],
     };
-    let sample = |(t, value): &(f64, f64)| ErrorSample { t: *t, error: [*value; 3], sigma: [*value; 3] };
+    let sample = |(t, value): &(f64, f64)| PoseErrorSample { t: *t, error: [*value; 3], sigma: [*value; 3] };
     let scales = [AxisScale::Linear, AxisScale::Log10];
     let mut plots = vec![
         MapPlot {
@@ -114,7 +114,7 @@ fn all_plots(values: &[f64]) -> Vec<SvgPlot> {
             ..MapPlot::default()
         }
         .draw(),
-        ErrorPlot { samples: pairs.iter().map(sample).collect(), ..ErrorPlot::default() }.draw(),
+        PoseErrorPlot { samples: pairs.iter().map(sample).collect(), ..PoseErrorPlot::default() }.draw(),
     ];
     for scale in scales {
         let consistency = ConsistencyPlot {
@@ -127,11 +127,16 @@ fn all_plots(values: &[f64]) -> Vec<SvgPlot> {
         };
         plots.push(consistency.draw());
         plots.push(
-            TimesPlot { points: pairs.clone(), x_scale: scale, y_scale: scale, ..TimesPlot::default() }
-                .draw(),
+            StepTimesPlot {
+                points: pairs.clone(),
+                x_scale: scale,
+                y_scale: scale,
+                ..StepTimesPlot::default()
+            }
+            .draw(),
         );
         let series = vec![PlotSeries::new("a", pairs.clone()), PlotSeries::new("b", places.clone())];
-        plots.push(LinesPlot { series, x_scale: scale, y_scale: scale, ..LinesPlot::default() }.draw());
+        plots.push(LinePlot { series, x_scale: scale, y_scale: scale, ..LinePlot::default() }.draw());
     }
     plots.into_iter().map(|picture| picture.expect("no input is an error")).collect()
 }

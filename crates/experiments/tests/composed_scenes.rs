@@ -9,7 +9,9 @@ use common::experiments;
 use wayfix_condensation::{Picture, StateSpace, ViewGrid};
 use wayfix_evaluation::report::{Metric, Report, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
-use wayfix_systems::views::{self, DescriptorKind, LightNormalization, ViewSetup, ViewsParams, ViewsRun};
+use wayfix_systems::views::{
+    self, DescriptorKind, LightNormalization, ViewSystemConfig, ViewsParams, ViewsRun,
+};
 
 fn figure(metrics: &[Metric], name: &str) -> f64 {
     metrics.iter().find(|metric| metric.name == name).expect(name).value
@@ -23,7 +25,7 @@ fn unchanged() -> ViewsRun {
             .map(|phase| (60.0 * phase.sin() + 120.0) as u8)
     };
     let picture = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
-    let setup = ViewSetup {
+    let setup = ViewSystemConfig {
         view: 64,
         step: 16,
         feature: DescriptorKind::MeanVar,

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use wayfix_evaluation::report::Metric;
-use wayfix_experiments::films::{FilmScore, table};
+use wayfix_experiments::films::{FilmTrackingScore, table};
 use wayfix_scene_sim::film::{FilmFrame, OcclusionEvent, SyntheticFilm};
 use wayfix_systems::track::{TrackParams, TrackingMethod};
 use wayfix_visual_tracking::{BoundingBox, TargetEstimate, TrackStatus};
@@ -27,7 +27,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
     let (right, bottom) = (x + boxed.bounding_box.width(), y + boxed.bounding_box.height());
     let outlined =
         TargetEstimate { outline: vec![[x, y], [right, y], [right, bottom], [x, bottom]], ..boxed.clone() };
-    let mut score = FilmScore::default();
+    let mut score = FilmTrackingScore::default();
     score.add(&boxed, &frame).unwrap();
     score.add(&outlined, &frame).unwrap();
     assert_eq!(score.iou[0], 1.0);
@@ -40,7 +40,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
 #[test]
 fn lost_target_has_zero_overlap_and_a_hidden_one_no_score() {
     let hidden = SyntheticFilm { occlusion: OcclusionEvent::Hidden, ..film(60) };
-    let mut score = FilmScore::default();
+    let mut score = FilmTrackingScore::default();
     let (mut n_visible, mut n_hidden) = (0, 0);
     for frame in hidden.frames().unwrap() {
         score.add(&true_box(&frame, TrackStatus::Lost), &frame).unwrap();

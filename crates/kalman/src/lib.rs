@@ -9,7 +9,7 @@
 //! | several measurements at once | [`StackedSensor`] sensors: the batch update |
 //! | a whole recording | [`RtsSmoother`] |
 //! | a target with several motion models | [`ImmFilter`], [`Gpb2Filter`] |
-//! | conditions that switch, each with its own filter | [`ModelBank`], [`JumpMarkovFilter`] |
+//! | conditions that switch, each with its own filter | [`FilterBank`], [`JumpMarkovFilter`] |
 //! | noise parameters to validate | [`Innovation::nis`], [`nees`], [`ConsistencyStatistics`] |
 //!
 //! Every update returns its [`Innovation`]; gated ones an [`GatedUpdate`] with the outcome of the measurement. After an error the filter is
@@ -59,7 +59,7 @@ pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, Lin
 pub use smoother::RtsSmoother;
 pub use stacked::{StackedMeasurement, StackedSensor};
 pub use switching::{
-    Gpb2Filter, ImmFilter, JumpMarkovFilter, JumpMarkovFilterParams, MarkovChain, ModelBank, ModelUpdate,
+    FilterBank, Gpb2Filter, ImmFilter, JumpMarkovFilter, JumpMarkovFilterParams, MarkovChain, ModelUpdate,
 };
 pub use update::GatedUpdate;
 

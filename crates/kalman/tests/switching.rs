@@ -11,9 +11,9 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, SensorModel, StateAlloc};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, Gpb2Filter, ImmFilter, InformationForm, IteratedExtendedForm, JumpMarkovFilter,
-    JumpMarkovFilterParams, KalmanFilter, LinearMotion, LinearSensor, MarkovChain, ModelBank, SquareRootForm,
-    UnscentedForm,
+    ExtendedForm, FilterBank, FilterForm, Gpb2Filter, ImmFilter, InformationForm, IteratedExtendedForm,
+    JumpMarkovFilter, JumpMarkovFilterParams, KalmanFilter, LinearMotion, LinearSensor, MarkovChain,
+    SquareRootForm, UnscentedForm,
 };
 
 const SEEDS: std::ops::Range<u64> = 700..740;
@@ -278,7 +278,7 @@ fn lights(n_histories: usize) -> JumpMarkovFilter<LinearMotion<f64, nalgebra::U1
     let drift = LinearMotion::stationary(Matrix1::new(0.5)).unwrap();
     let prior = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(400.0)).unwrap();
     let bank =
-        ModelBank::new(vec![drift.clone(), drift], ExtendedForm, &[prior(160.0), prior(40.0)]).unwrap();
+        FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[prior(160.0), prior(40.0)]).unwrap();
     let params = JumpMarkovFilterParams { n_histories, history_length: 40 };
     JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95).unwrap(), params).unwrap()
 }

@@ -1,7 +1,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_line_extract::{
-    ChainSimplifier, LineExtractionParams, LineExtractor, PointDistance, Scan, SplitMethod, douglas_peucker,
+    LineExtractionParams, LineExtractor, PointDistance, PolylineSimplifier, Scan, SplitMethod,
+    douglas_peucker,
 };
 
 use crate::chains::Case;
@@ -15,18 +16,18 @@ pub(crate) fn run() {
     scan("wayfix end point fit", SplitMethod::EndPointFit);
     scan("wayfix split and merge", SplitMethod::SplitAndMerge);
     for case in [Case::walk(1_000_000), Case::circle(1_000_000)] {
-        simplify(&case, "wayfix", ChainSimplifier::default());
-        simplify(&case, "wayfix hulls only", ChainSimplifier::hull_tree_only());
+        simplify(&case, "wayfix", PolylineSimplifier::default());
+        simplify(&case, "wayfix hulls only", PolylineSimplifier::hull_tree_only());
         measure(&case.name, "wayfix classic", 1, || {
             douglas_peucker(&case.points, case.epsilon, PointDistance::Line).expect("a valid chain")
         });
     }
     for case in [Case::comb(100_000), Case::straight(100_000)] {
-        simplify(&case, "wayfix", ChainSimplifier::default());
+        simplify(&case, "wayfix", PolylineSimplifier::default());
     }
     for n in [100_000, 1_000_000] {
-        simplify(&Case::zigzag(n), "wayfix", ChainSimplifier::default());
-        simplify(&Case::zigzag(n), "wayfix hulls only", ChainSimplifier::hull_tree_only());
+        simplify(&Case::zigzag(n), "wayfix", PolylineSimplifier::default());
+        simplify(&Case::zigzag(n), "wayfix hulls only", PolylineSimplifier::hull_tree_only());
     }
 }
 
@@ -44,7 +45,7 @@ fn scan(program: &str, split: SplitMethod) {
     measure("scan of 1081 beams to walls", program, 1000, || extractor.extract(&scan).expect("a valid scan"));
 }
 
-fn simplify(case: &Case, program: &str, mut simplifier: ChainSimplifier) {
+fn simplify(case: &Case, program: &str, mut simplifier: PolylineSimplifier) {
     let mut kept = Vec::new();
     measure(&case.name, program, 1, || {
         simplifier.simplify_into(&case.points, case.epsilon, &mut kept).expect("a valid chain");

@@ -4,7 +4,9 @@ use nalgebra::Vector2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_line_extract::{ChainSimplifier, LineExtractionError, PointDistance, douglas_peucker, simplify};
+use wayfix_line_extract::{
+    LineExtractionError, PointDistance, PolylineSimplifier, douglas_peucker, simplify,
+};
 
 const SEED_SIMPLE: u64 = 31;
 const SEED_WILD: u64 = 32;
@@ -17,7 +19,7 @@ fn assert_same(chain: &Chain, epsilon: f64, what: &str) {
     let expected = douglas_peucker(chain, epsilon, PointDistance::Line).expect("a valid chain");
     assert_eq!(simplify(chain, epsilon).expect("a valid chain"), expected, "{what}, patient");
     let mut kept = Vec::new();
-    ChainSimplifier::hull_tree_only().simplify_into(chain, epsilon, &mut kept).expect("a valid chain");
+    PolylineSimplifier::hull_tree_only().simplify_into(chain, epsilon, &mut kept).expect("a valid chain");
     assert_eq!(kept, expected, "{what}, {} points, epsilon {epsilon}, hull_tree_only", chain.len());
 }
 
@@ -167,7 +169,7 @@ fn bad_input_is_refused_and_leaves_the_result_alone() {
             let mut chain = good.clone();
             chain[at].y = bad;
             let mut kept = vec![7, 8, 9];
-            let refused = ChainSimplifier::default().simplify_into(&chain, 0.1, &mut kept);
+            let refused = PolylineSimplifier::default().simplify_into(&chain, 0.1, &mut kept);
             assert!(
                 matches!(refused, Err(LineExtractionError::Point { index, .. }) if index == at),
                 "{refused:?}"

@@ -7,7 +7,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::{RandomStreamPurpose, RandomStreams, deviate};
 use wayfix_scene_sim::route::CircleRoute;
-use wayfix_scene_sim::sensor::{Sensor, SensorReading, TrueState};
+use wayfix_scene_sim::sensor::{SensorReading, SimulatedSensor, TrueState};
 use wayfix_scene_sim::world::SensorWorld;
 use wayfix_scene_sim::{Simulation, SimulationError, plane};
 use wayfix_sensor_log::{Detection, DetectionTarget, RecordData, TrueLandmark};
@@ -28,7 +28,7 @@ impl SensorWorld for WalkingBeacon {
 /// Hears distance with 0.5 m of noise, once a second.
 struct Receiver;
 
-impl Sensor for Receiver {
+impl SimulatedSensor for Receiver {
     fn period_ms(&self) -> u32 {
         1000
     }

@@ -19,7 +19,7 @@
 //!   and invents echoes, hits people, and rounds.
 //! * **One random stream per error source** ([`random::RandomStreams`]): enabling one does not affect the draws of the others.
 //! * **Equal bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
-//! * **Extensible**: implement [`world::SensorWorld`] or [`sensor::Sensor`] (`examples/02_custom_sensor.rs`).
+//! * **Extensible**: implement [`world::SensorWorld`] or [`sensor::SimulatedSensor`] (`examples/02_custom_sensor.rs`).
 //!
 //! ```
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

@@ -3,7 +3,7 @@ use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 use crate::drive::{DifferentialDrive, PurePursuit, WheeledRobotParams};
 use crate::random::RandomStreams;
 use crate::route::Route;
-use crate::sensor::{Sensor, TrueState};
+use crate::sensor::{SimulatedSensor, TrueState};
 use crate::world::SensorWorld;
 use crate::{SimulationError, check};
 
@@ -63,7 +63,7 @@ impl<'a> Simulation<'a> {
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range; `streams` is then unchanged.
     pub fn run(
         &self,
-        sensors: &mut [Box<dyn Sensor>],
+        sensors: &mut [Box<dyn SimulatedSensor>],
         streams: &mut RandomStreams,
     ) -> Result<Vec<Record>, SimulationError> {
         self.validate(sensors)?;
@@ -85,7 +85,7 @@ impl<'a> Simulation<'a> {
         Ok(records)
     }
 
-    fn validate(&self, sensors: &[Box<dyn Sensor>]) -> Result<(), SimulationError> {
+    fn validate(&self, sensors: &[Box<dyn SimulatedSensor>]) -> Result<(), SimulationError> {
         if self.duration_ms > LONGEST_MS {
             let what = "milliseconds of driving";
             return Err(SimulationError::TooMany { what, limit: LONGEST_MS, got: self.duration_ms });
@@ -109,7 +109,7 @@ impl<'a> Simulation<'a> {
     fn log(
         &self,
         moment: &TrueState<'_>,
-        sensors: &mut [Box<dyn Sensor>],
+        sensors: &mut [Box<dyn SimulatedSensor>],
         streams: &mut RandomStreams,
         records: &mut Vec<Record>,
     ) {

@@ -11,12 +11,14 @@ use wayfix_scene_sim::route::{
     CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, RoutePiece, WaypointRoute,
 };
 use wayfix_scene_sim::sensor::laser::People;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{
+    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+};
 use wayfix_scene_sim::sensor::{
-    GaussianOdometryParams, LaserParams, RangeBearingParams, Sensor, WheelOdometryParams,
+    GaussianOdometryParams, LaserParams, RangeBearingParams, SimulatedSensor, WheelOdometryParams,
 };
 use wayfix_scene_sim::sensor::{SensorReading, TrueState};
-use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField};
+use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, RoadsideLandmarks, UniformLandmarkField};
 use wayfix_scene_sim::{Scenario, ScenarioParams, Simulation, SimulationError};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
@@ -34,8 +36,8 @@ fn assert_refused(result: Result<(), SimulationError>, value: f64) {
 fn sensor_parameters() {
     let honest = RangeBearingParams::default();
     for bad in BAD {
-        let sigma = RangeSigma { constant_m: bad, per_meter: 0.0 };
-        let growth = RangeSigma { constant_m: 0.1, per_meter: bad };
+        let sigma = RangeDependentSigma { constant_m: bad, per_meter: 0.0 };
+        let growth = RangeDependentSigma { constant_m: 0.1, per_meter: bad };
         let drift = |correlation_time_s, bearing_sigma_rad| CorrelatedErrorParams {
             correlation_time_s,
             bearing_sigma_rad,
@@ -78,7 +80,7 @@ fn laser_parameters() {
         for params in [
             LaserParams { max_range_m: bad, ..honest },
             LaserParams { no_echo_range_m: bad, ..honest },
-            LaserParams { range_noise: RangeSigma { constant_m: bad, per_meter: 0.0 }, ..honest },
+            LaserParams { range_noise: RangeDependentSigma { constant_m: bad, per_meter: 0.0 }, ..honest },
             LaserParams { noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad }, ..honest },
             LaserParams { bearing_sigma_rad: bad, ..honest },
             LaserParams { range_resolution_m: bad, ..honest },
@@ -184,9 +186,9 @@ fn worlds() {
     let rng = streams.of(RandomStreamPurpose::Landmarks);
     let route = CircleRoute { radius_m: 2.0 }.route().expect("valid");
     for bad in BAD {
-        let field = UniformField { n_landmarks: 2, half_width_m: 5.0, separation_m: 0.0 };
-        assert_refused(UniformField { half_width_m: bad, ..field }.plan(rng).map(drop), bad);
-        assert_refused(UniformField { separation_m: bad, ..field }.plan(rng).map(drop), bad);
+        let field = UniformLandmarkField { n_landmarks: 2, half_width_m: 5.0, separation_m: 0.0 };
+        assert_refused(UniformLandmarkField { half_width_m: bad, ..field }.plan(rng).map(drop), bad);
+        assert_refused(UniformLandmarkField { separation_m: bad, ..field }.plan(rng).map(drop), bad);
         let corridor = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 1.0 };
         assert_refused(CorridorLoop { length_m: bad, ..corridor }.plan(rng).map(drop), bad);
         assert_refused(CorridorLoop { corridor_m: bad, ..corridor }.plan(rng).map(drop), bad);
@@ -219,11 +221,11 @@ fn worlds() {
         assert_refused(OfficeFloor { n_rooms: 8, ..floor }.plan(rng).map(drop), 32.0);
         let crowded = OfficeFloor { spacing_m: 1e-300, ..floor };
         assert!(matches!(crowded.plan(rng), Err(SimulationError::TooMany { .. })));
-        let rocks = Roadside { n_landmarks: 2, clear_m: 1.0, verge_m: 1.0 };
-        assert_refused(Roadside { clear_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
-        assert_refused(Roadside { verge_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
+        let rocks = RoadsideLandmarks { n_landmarks: 2, clear_m: 1.0, verge_m: 1.0 };
+        assert_refused(RoadsideLandmarks { clear_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
+        assert_refused(RoadsideLandmarks { verge_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
     }
-    let crowded = UniformField { n_landmarks: 100, half_width_m: 1.0, separation_m: 1.0 };
+    let crowded = UniformLandmarkField { n_landmarks: 100, half_width_m: 1.0, separation_m: 1.0 };
     assert!(matches!(crowded.plan(rng), Err(SimulationError::NoRoom { wanted: 100, .. })));
     let endless = Office { n_columns: usize::MAX, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.0 };
     assert!(matches!(endless.plan(rng), Err(SimulationError::TooMany { .. })));
@@ -262,7 +264,7 @@ fn simulations_scenarios_and_the_monobot() {
 /// A sensor whose clock stands still.
 struct Stopped;
 
-impl Sensor for Stopped {
+impl SimulatedSensor for Stopped {
     fn period_ms(&self) -> u32 {
         0
     }

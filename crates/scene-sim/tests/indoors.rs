@@ -4,7 +4,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::WheeledRobotParams;
 use wayfix_scene_sim::indoors::{
-    AmbientLightParams, Building, IndoorDrive, IndoorParams, IndoorStep, Laboratory, MirrorCamera,
+    AmbientLightParams, Building, IndoorDrive, IndoorDriveStep, IndoorParams, Laboratory, MirrorCamera,
     OmniCameraParams, RetailStore, RetailStoreParams, calibrated_robot,
 };
 use wayfix_scene_sim::random::RandomStreams;
@@ -21,7 +21,7 @@ fn area() -> RetailStore {
     RetailStore::draw(RetailStoreParams::area(), &mut rng()).expect("the area is a store")
 }
 
-fn tour(building: &Building, params: IndoorParams, length_m: f64, seed: u64) -> Vec<IndoorStep> {
+fn tour(building: &Building, params: IndoorParams, length_m: f64, seed: u64) -> Vec<IndoorDriveStep> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let route = building.aisles().tour(length_m, &mut rng).expect("there are aisles");
     IndoorDrive::new(building, route, params, RandomStreams::new(rng))

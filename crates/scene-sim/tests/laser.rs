@@ -7,15 +7,15 @@ use std::f64::consts::FRAC_PI_2;
 use support::{assert_near, assert_share, deviation, mean, streams};
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_scene_sim::sensor::laser::People;
-use wayfix_scene_sim::sensor::range_bearing::RangeSigma;
-use wayfix_scene_sim::sensor::{Laser, LaserParams, Sensor, TrueState};
+use wayfix_scene_sim::sensor::range_bearing::RangeDependentSigma;
+use wayfix_scene_sim::sensor::{Laser, LaserParams, SimulatedSensor, TrueState};
 use wayfix_scene_sim::world::{FloorPlan, PlanarWorld, Wall};
 use wayfix_sensor_log::{LaserScan, RecordData};
 
 /// No error at all.
 fn exact() -> LaserParams {
     LaserParams {
-        range_noise: RangeSigma::default(),
+        range_noise: RangeDependentSigma::default(),
         bearing_sigma_rad: 0.0,
         range_resolution_m: 0.0,
         mixed_pixel_share: 0.0,
@@ -77,7 +77,7 @@ fn a_turned_and_moved_robot_sees_the_same_wall_from_there() {
 fn ranges_err_as_stated_and_are_whole_centimetres() {
     let noisy = LaserParams {
         range_bias_m: 0.02,
-        range_noise: RangeSigma { constant_m: 0.03, per_meter: 0.0 },
+        range_noise: RangeDependentSigma { constant_m: 0.03, per_meter: 0.0 },
         ..exact()
     };
     let ahead = |params| -> Vec<f64> {

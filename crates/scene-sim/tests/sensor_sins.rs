@@ -7,7 +7,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{
+    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+};
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
 use wayfix_sensor_log::{Detection, DetectionTarget};
 
@@ -19,7 +21,7 @@ fn honest() -> RangeBearingParams {
 }
 
 fn silent() -> RangeBearingParams {
-    RangeBearingParams { range_noise: RangeSigma::default(), bearing_sigma_rad: 0.0, ..honest() }
+    RangeBearingParams { range_noise: RangeDependentSigma::default(), bearing_sigma_rad: 0.0, ..honest() }
 }
 
 fn ahead() -> PlanarWorld {
@@ -64,7 +66,7 @@ fn heavy_tails_keep_sigma_and_have_the_stated_kurtosis() {
 
 #[test]
 fn noise_grows_with_range() {
-    let growing = RangeSigma { constant_m: 0.01, per_meter: 0.02 };
+    let growing = RangeDependentSigma { constant_m: 0.01, per_meter: 0.02 };
     let params = RangeBearingParams { range_noise: growing, ..honest() };
     for range in [1.0, 7.0] {
         let seen = ranges(&detections(params, &world(&[(range, 0.0)]), N, SEED));
@@ -91,7 +93,7 @@ fn bearings_stay_wrapped() {
 #[test]
 fn drift_has_stated_size_and_correlation_time_per_target() {
     let drift = CorrelatedErrorParams {
-        range: RangeSigma { constant_m: 0.1, per_meter: 0.0 },
+        range: RangeDependentSigma { constant_m: 0.1, per_meter: 0.0 },
         bearing_sigma_rad: 0.02,
         correlation_time_s: 2.0,
     };

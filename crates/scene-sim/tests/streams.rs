@@ -5,7 +5,9 @@ mod support;
 use support::{looks, run, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{
+    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+};
 use wayfix_scene_sim::{Scenario, ScenarioParams};
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
 
@@ -53,7 +55,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     let honest = RangeBearingParams::default();
     let bearings =
         |params| -> Vec<f64> { of_the_landmark(params).iter().flatten().map(|s| s.bearing).collect() };
-    let range = RangeSigma { constant_m: 0.3, per_meter: 0.0 };
+    let range = RangeDependentSigma { constant_m: 0.3, per_meter: 0.0 };
     let drift = CorrelatedErrorParams { range, ..CorrelatedErrorParams::default() };
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };

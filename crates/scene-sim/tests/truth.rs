@@ -7,8 +7,8 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
 use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
 use wayfix_scene_sim::route::{CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, WaypointRoute};
 use wayfix_scene_sim::sensor::{
-    GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams, Sensor,
-    WheelOdometry, WheelOdometryParams,
+    GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams,
+    SimulatedSensor, WheelOdometry, WheelOdometryParams,
 };
 use wayfix_scene_sim::{Scenario, Simulation};
 use wayfix_sensor_log::{Record, RecordData};
@@ -36,12 +36,12 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
 fn drive(
     route: Route,
     drive: WheeledRobotParams,
-    sensor: Option<Box<dyn Sensor>>,
+    sensor: Option<Box<dyn SimulatedSensor>>,
     duration_ms: u64,
 ) -> Vec<Record> {
     let nothing = world(&[]);
     let simulation = Simulation { drive, duration_ms, ..Simulation::new(&nothing, route) };
-    let mut sensors: Vec<Box<dyn Sensor>> = sensor.into_iter().collect();
+    let mut sensors: Vec<Box<dyn SimulatedSensor>> = sensor.into_iter().collect();
     simulation.run(&mut sensors, &mut streams(5)).expect("valid parameters")
 }
 

@@ -7,8 +7,8 @@ use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::RandomStreamPurpose;
 use wayfix_scene_sim::route::{CircleRoute, Route, RoutePiece};
 use wayfix_scene_sim::world::{
-    CorridorLoop, FloorPlan, Office, OfficeFloor, OtherRobot, PlanarWorld, Roadside, SensorWorld,
-    UniformField,
+    CorridorLoop, FloorPlan, Office, OfficeFloor, OtherRobot, PlanarWorld, RoadsideLandmarks, SensorWorld,
+    UniformLandmarkField,
 };
 use wayfix_sensor_log::{DetectionTarget, TrueLandmark};
 
@@ -20,7 +20,7 @@ fn points(plan: &FloorPlan) -> Vec<Vector2<f64>> {
 
 #[test]
 fn a_field_fills_its_square_and_keeps_landmarks_apart() {
-    let field = UniformField { n_landmarks: 100, half_width_m: 10.0, separation_m: 1.0 };
+    let field = UniformLandmarkField { n_landmarks: 100, half_width_m: 10.0, separation_m: 1.0 };
     let plan = field.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     let points = points(&plan);
     for (k, p) in points.iter().enumerate() {
@@ -120,7 +120,7 @@ fn an_office_floor_is_closed_but_for_its_doors() {
 #[test]
 fn rocks_lie_on_both_verges_of_the_road() {
     let road = CircleRoute { radius_m: 20.0 }.route().expect("valid");
-    let rocks = Roadside { n_landmarks: 100, clear_m: 1.5, verge_m: 3.0 };
+    let rocks = RoadsideLandmarks { n_landmarks: 100, clear_m: 1.5, verge_m: 3.0 };
     let plan = rocks.plan(&road, streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     let offsets: Vec<f64> = points(&plan).iter().map(|p| p.norm() - 20.0).collect();
     assert!(offsets.iter().all(|o| (1.5 - 1e-9..=4.5 + 1e-9).contains(&o.abs())));

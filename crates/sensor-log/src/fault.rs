@@ -3,23 +3,23 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use wayfix_estimation_traits::Pose3;
 
-use crate::ProblemKind;
+use crate::RowProblemKind;
 use crate::planar::NORM_TOLERANCE;
 
 /// A fault of a message.
-pub(crate) type Fault = (ProblemKind, String);
+pub(crate) type Fault = (RowProblemKind, String);
 
 /// Tolerance of the norm of a unit quaternion in doubles after a few products.
 const ROUNDING: f64 = 1e-12;
 
 pub(crate) fn inconsistent(reason: &str) -> Fault {
-    (ProblemKind::Inconsistent, reason.to_owned())
+    (RowProblemKind::Inconsistent, reason.to_owned())
 }
 
 pub(crate) fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
     match numbers.into_iter().find(|number| !number.is_finite()) {
         None => Ok(()),
-        Some(number) => Err((ProblemKind::NotFinite, format!("{number} is not finite"))),
+        Some(number) => Err((RowProblemKind::NotFinite, format!("{number} is not finite"))),
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::vec;
 
 use crate::{
-    EncodedImage, ImageFormat, LogError, ProblemKind, ReadReport, Record, RecordData, RowProblem, Stamp,
+    EncodedImage, ImageFormat, LogError, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp,
 };
 
 /// No frame is larger; a file that is something else must not fill the memory.
@@ -56,7 +56,7 @@ impl ImageFolder {
                 Err(reason) => report.add(RowProblem {
                     file: file_name(&path),
                     row: index as u64 + 1,
-                    kind: ProblemKind::UnreadableImage,
+                    kind: RowProblemKind::UnreadableImage,
                     reason,
                 }),
             }

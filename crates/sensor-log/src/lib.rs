@@ -53,7 +53,7 @@ mod text;
 mod write;
 
 pub use ackermann::AckermannDrive;
-pub use bag::{Topic, TopicUse};
+pub use bag::{BagTopic, TopicUse};
 pub use convert::convert;
 pub use error::LogError;
 pub use formats::compressed::read_text;
@@ -70,7 +70,7 @@ pub use record::{
     CameraInfo, Detection, DetectionTarget, Record, RecordData, TrueLandmark, TruePosition, TrueWall,
     Velocity,
 };
-pub use report::{LogEnd, LogWarning, ProblemKind, ReadReport, RowProblem};
+pub use report::{LogEnd, LogWarning, ReadReport, RowProblem, RowProblemKind};
 pub use scan::{LaserScan, ScanSummary};
 pub use stamp::Stamp;
 pub use summary::{LogSummary, RecordKindSummary};

@@ -5,7 +5,7 @@ use std::vec;
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
-use crate::{LogFormat, ReadReport, Record, Topic};
+use crate::{BagTopic, LogFormat, ReadReport, Record};
 
 /// An open log: an iterator over its records in time order, with metadata.
 ///
@@ -33,7 +33,7 @@ pub struct LogMeta {
     /// Robot of the records, in data sets of several robots.
     pub robot: Option<u32>,
     /// Topics of ROS 2 messages, in file order, with their use.
-    pub topics: Vec<Topic>,
+    pub topics: Vec<BagTopic>,
 }
 
 impl LogMeta {

@@ -14,7 +14,7 @@ pub struct ReadReport {
     /// Number of rows or messages read.
     pub rows_read: u64,
     /// Count of each kind of problem.
-    pub problems: BTreeMap<ProblemKind, u64>,
+    pub problems: BTreeMap<RowProblemKind, u64>,
     /// The first problems, in the order of the log.
     pub examples: Vec<RowProblem>,
     /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, with their number.
@@ -65,7 +65,7 @@ pub struct RowProblem {
     /// Line of a text file, index of a scan in a JSON file, of a message in an MCAP file or of an image in its folder; all count from 1.
     pub row: u64,
     /// Kind of problem.
-    pub kind: ProblemKind,
+    pub kind: RowProblemKind,
     /// The details.
     pub reason: String,
 }
@@ -73,7 +73,7 @@ pub struct RowProblem {
 /// Kinds of trouble with a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum ProblemKind {
+pub enum RowProblemKind {
     /// Too few or too many columns; left out.
     ColumnCount,
     /// A column is not the number it should be; left out.
@@ -102,7 +102,7 @@ pub enum ProblemKind {
     UnreadableImage,
 }
 
-impl ProblemKind {
+impl RowProblemKind {
     /// Whether the row is used all the same.
     pub(crate) fn keeps_the_row(self) -> bool {
         matches!(self, Self::OutOfOrder | Self::NotLater)
@@ -200,7 +200,7 @@ impl fmt::Display for RowProblem {
     }
 }
 
-impl fmt::Display for ProblemKind {
+impl fmt::Display for RowProblemKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::ColumnCount => "wrong number of columns",

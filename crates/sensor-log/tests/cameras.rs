@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_sensor_log::{
     CameraInfo, EncodedImage, ImageFormat, LogError, LogFormat, LogSummary, McapWriter, OpenOptions,
-    ProblemKind, ReadReport, Record, RecordData, Stamp, convert, open, topics, write,
+    ReadReport, Record, RecordData, RowProblemKind, Stamp, convert, open, topics, write,
 };
 
 const INFO: CameraInfo = CameraInfo { width: 16, height: 12, fx: 14.25, fy: 14.5, cx: 8.0, cy: 6.125 };
@@ -177,7 +177,7 @@ fn a_camera_or_image_that_would_not_come_back_is_not_written() {
 }
 
 /// What our reader says of a message that another program wrote.
-fn problem_of<M: Encode + prost::Message>(topic: &str, message: &M) -> (ProblemKind, String) {
+fn problem_of<M: Encode + prost::Message>(topic: &str, message: &M) -> (RowProblemKind, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
     let mut writer = WriteOptions::new().create(fs::File::create(&path).unwrap()).unwrap();
@@ -220,9 +220,9 @@ fn cameras_of_other_programs_are_refused_with_a_reason() {
         change(&mut changed);
         problem_of(topics::CAMERA_INFO, &changed)
     };
-    assert_eq!(of(&|c| c.k[4] = f64::NAN).0, ProblemKind::NotFinite);
-    assert_eq!(of(&|c| c.k[0] = 0.0).0, ProblemKind::Inconsistent);
-    assert_eq!(of(&|c| c.height = 0).0, ProblemKind::Inconsistent);
+    assert_eq!(of(&|c| c.k[4] = f64::NAN).0, RowProblemKind::NotFinite);
+    assert_eq!(of(&|c| c.k[0] = 0.0).0, RowProblemKind::Inconsistent);
+    assert_eq!(of(&|c| c.height = 0).0, RowProblemKind::Inconsistent);
     assert!(of(&|c| c.k.truncate(6)).1.contains("6 numbers, not 9"));
     assert!(of(&|c| c.d = vec![0.0, -0.2]).1.contains("[0.0, -0.2]; rectify the images"));
 
@@ -231,11 +231,11 @@ fn cameras_of_other_programs_are_refused_with_a_reason() {
         rotation: Some(Quaternion { x: 0.0, y: 0.0, z: 0.0, w }),
         ..Default::default()
     };
-    assert_eq!(problem_of(topics::CAMERA_MOUNT, &mount(f64::NAN, 1.0)).0, ProblemKind::NotFinite);
-    assert_eq!(problem_of(topics::CAMERA_MOUNT, &mount(0.0, f64::INFINITY)).0, ProblemKind::NotFinite);
+    assert_eq!(problem_of(topics::CAMERA_MOUNT, &mount(f64::NAN, 1.0)).0, RowProblemKind::NotFinite);
+    assert_eq!(problem_of(topics::CAMERA_MOUNT, &mount(0.0, f64::INFINITY)).0, RowProblemKind::NotFinite);
     for norm in [1e200, 1e-200, 0.9] {
         let (kind, reason) = problem_of(topics::CAMERA_MOUNT, &mount(0.0, norm));
-        assert_eq!(kind, ProblemKind::Inconsistent, "{reason}");
+        assert_eq!(kind, RowProblemKind::Inconsistent, "{reason}");
     }
 
     let image = CompressedImage {
@@ -244,10 +244,10 @@ fn cameras_of_other_programs_are_refused_with_a_reason() {
         ..Default::default()
     };
     let (kind, reason) = problem_of(topics::IMAGE, &image);
-    assert_eq!(kind, ProblemKind::UnreadableImage);
+    assert_eq!(kind, RowProblemKind::UnreadableImage);
     assert!(reason.ends_with("image called \"webp\" is neither JPEG nor PNG (12 bytes)"), "{reason}");
     let empty = CompressedImage { format: "jpeg".into(), ..Default::default() };
-    assert_eq!(problem_of(topics::TRUE_LABELS, &empty).0, ProblemKind::UnreadableImage);
+    assert_eq!(problem_of(topics::TRUE_LABELS, &empty).0, RowProblemKind::UnreadableImage);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::path::Path;
 use flate2::{Compression, write::GzEncoder};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogEnd, LogFormat, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, RecordData, open,
+    LogEnd, LogFormat, OpenOptions, PoseKind, ReadReport, Record, RecordData, RowProblemKind, open,
 };
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
@@ -112,12 +112,12 @@ fn a_damaged_line_is_counted_and_the_others_are_read() {
     let (records, report) = read(&folder.path().join("bad.log"), text.as_bytes());
     assert_eq!(n_scans(&records), 2);
     let count = |kind| report.problems.get(&kind).copied().unwrap_or_default();
-    assert_eq!(count(ProblemKind::ColumnCount), 4, "{report}");
-    assert_eq!(count(ProblemKind::Inconsistent), 1, "{report}");
-    assert_eq!(count(ProblemKind::NotANumber), 2, "{report}");
-    assert_eq!(count(ProblemKind::NotFinite), 1, "{report}");
-    assert_eq!(count(ProblemKind::BadStamp), 1, "{report}");
-    assert_eq!(count(ProblemKind::Unrecognized), 2, "{report}");
+    assert_eq!(count(RowProblemKind::ColumnCount), 4, "{report}");
+    assert_eq!(count(RowProblemKind::Inconsistent), 1, "{report}");
+    assert_eq!(count(RowProblemKind::NotANumber), 2, "{report}");
+    assert_eq!(count(RowProblemKind::NotFinite), 1, "{report}");
+    assert_eq!(count(RowProblemKind::BadStamp), 1, "{report}");
+    assert_eq!(count(RowProblemKind::Unrecognized), 2, "{report}");
     assert_eq!((report.rows_read, report.n_problems()), (2, 11));
 }
 
@@ -131,7 +131,7 @@ fn line_order_decides_where_time_does_not_advance() {
     let milliseconds: Vec<u64> = scans.map(|record| record.stamp.nanoseconds() / 1_000_000).collect();
     assert_eq!(milliseconds, [5000, 5100, 5200, 9000]);
     assert_eq!((report.rows_read, report.n_problems()), (4, 2));
-    assert_eq!(report.problems[&ProblemKind::NotLater], 2);
+    assert_eq!(report.problems[&RowProblemKind::NotLater], 2);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn a_scan_beyond_2106_is_left_out_and_counted() {
     let (records, report) = read(&folder.path().join("late.log"), lines.concat().as_bytes());
     assert_eq!(records, expected);
     assert_eq!((report.rows_read, report.n_problems()), (6, 1));
-    assert_eq!((report.examples[0].row, report.examples[0].kind), (6, ProblemKind::BadStamp));
+    assert_eq!((report.examples[0].row, report.examples[0].kind), (6, RowProblemKind::BadStamp));
 }
 
 #[test]

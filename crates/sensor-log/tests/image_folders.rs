@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    EncodedImage, LogError, LogFormat, OpenOptions, ProblemKind, Record, RecordData, Stamp, convert, open,
+    EncodedImage, LogError, LogFormat, OpenOptions, Record, RecordData, RowProblemKind, Stamp, convert, open,
     write,
 };
 
@@ -65,7 +65,7 @@ fn frames_that_cannot_be_read_are_counted_and_leave_their_gap() {
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     assert_eq!(widths(&records), [2, 6]);
     assert_eq!(records[1].stamp, Stamp::from_nanoseconds(133_333_333), "the fifth file; a folder is none");
-    assert_eq!(report.problems[&ProblemKind::UnreadableImage], 3);
+    assert_eq!(report.problems[&RowProblemKind::UnreadableImage], 3);
     let reasons: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
     assert_eq!(reasons[0], "1.png:1: neither JPEG nor PNG");
     assert_eq!(reasons[2], format!("4.jpg:4: the image breaks off after {} bytes", whole.bytes.len() - 2));

@@ -14,8 +14,8 @@ use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use proptest::prelude::*;
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
-    write,
+    LogEnd, LogError, LogFormat, McapWriter, OpenOptions, ReadReport, Record, RecordData, RowProblemKind,
+    open, write,
 };
 
 struct Scratch {
@@ -152,7 +152,7 @@ fn chunk_with_wrong_checksum_is_skipped_and_the_next_read() {
         assert_eq!(bytes[first_chunk], 0x06, "a chunk follows the header");
         bytes[first_chunk + 9 + 24] ^= 1; // its checksum comes after two times and a size
         let (back, report) = Scratch::new().read(&bytes).unwrap();
-        assert_eq!(report.problems[&ProblemKind::DamagedChunk], 1, "{report}");
+        assert_eq!(report.problems[&RowProblemKind::DamagedChunk], 1, "{report}");
         // Channels are announced in the lost chunk only, so nothing on them can be understood; later ones can.
         assert!(back.len() < records.len());
         assert!(back.iter().all(|record| records.contains(record)));
@@ -233,7 +233,7 @@ fn late_messages_are_sorted_and_much_later_ones_reported() {
     let moved = much_too_late.remove(1);
     much_too_late.push(moved);
     let (back, report) = Scratch::new().read(&whole_file(&much_too_late)).unwrap();
-    assert_eq!(report.problems[&ProblemKind::TooLate], 1);
+    assert_eq!(report.problems[&RowProblemKind::TooLate], 1);
     assert_eq!(report.examples[0].row, records.len() as u64, "the last message is named");
     assert_eq!(back.len(), records.len() - 1);
 }
@@ -249,7 +249,7 @@ fn messages_with_numbers_that_are_none_are_counted() {
     writer.finish().unwrap();
     let (back, report) = Scratch::new().read(&out.into_inner()).unwrap();
     assert_eq!(back.len(), 1);
-    assert_eq!(report.problems[&ProblemKind::NotFinite], 1);
+    assert_eq!(report.problems[&RowProblemKind::NotFinite], 1);
 }
 
 proptest! {

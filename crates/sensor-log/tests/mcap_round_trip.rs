@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LaserScan, LogEnd, LogError, LogFormat, McapWriter,
-    OpenOptions, PoseKind, ProblemKind, Record, RecordData, Stamp, TrueLandmark, TruePosition, TrueWall,
+    OpenOptions, PoseKind, Record, RecordData, RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall,
     Velocity, convert, open, topics, write,
 };
 
@@ -237,7 +237,7 @@ fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
     writer.point_cloud(topics::TRUE_WALLS, Stamp::default(), topics::WORLD_FRAME, &[[1.0, 2.0]]).unwrap();
     writer.finish().unwrap();
     let (records, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
-    assert_eq!((records.len(), report.problems[&ProblemKind::Inconsistent]), (1, 1));
+    assert_eq!((records.len(), report.problems[&RowProblemKind::Inconsistent]), (1, 1));
 }
 
 #[test]

@@ -11,8 +11,8 @@ use foxglove::messages::{JointState, JointStates, LaserScan as ScanMessage, Pose
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use wayfix_sensor_log::{
-    AckermannDrive, LaserScan, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, RecordData, Stamp,
-    open, topics,
+    AckermannDrive, LaserScan, McapWriter, OpenOptions, ReadReport, Record, RecordData, RowProblemKind,
+    Stamp, open, topics,
 };
 
 type File = Writer<Cursor<Vec<u8>>>;
@@ -97,8 +97,8 @@ fn what_cannot_be_placed_or_is_no_number_is_counted() {
         add(file, topics::ACKERMANN, &[], &JointStates { joints, timestamp: None });
     });
     assert_eq!(data, [RecordData::Ackermann(AckermannDrive { wheel_speed: 1.0, steering: -0.5 })]);
-    assert_eq!(report.problems[&ProblemKind::Inconsistent], 2);
-    assert_eq!(report.problems[&ProblemKind::NotFinite], 2);
+    assert_eq!(report.problems[&RowProblemKind::Inconsistent], 2);
+    assert_eq!(report.problems[&RowProblemKind::NotFinite], 2);
 }
 
 #[test]

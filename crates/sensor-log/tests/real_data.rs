@@ -7,7 +7,8 @@ use std::path::PathBuf;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    DetectionTarget, OpenOptions, PoseRelation, ProblemKind, Record, RecordData, Stamp, open, read_relations,
+    DetectionTarget, OpenOptions, PoseRelation, Record, RecordData, RowProblemKind, Stamp, open,
+    read_relations,
 };
 
 fn data_folder() -> Option<PathBuf> {
@@ -97,7 +98,11 @@ fn carmen_logs() {
         );
         assert_eq!(count(&records, |data| matches!(data, RecordData::EstimatedPose(_))), n_scans);
         assert_eq!(count(&records, |data| matches!(data, RecordData::OdometryIncrement(_))), n_scans - 1);
-        assert_eq!(report.problems.get(&ProblemKind::NotLater).copied().unwrap_or(0), n_not_later, "{name}");
+        assert_eq!(
+            report.problems.get(&RowProblemKind::NotLater).copied().unwrap_or(0),
+            n_not_later,
+            "{name}"
+        );
         assert_eq!(report.n_problems(), n_not_later, "{name}: {report}");
         assert_eq!(report.ignored["NEFF"], n_scans as u64);
     }

@@ -6,7 +6,7 @@ use std::fs;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
+    LogEnd, LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
 };
 
 fn entry(seconds: &str, n_beams: usize, x: &str) -> String {
@@ -51,8 +51,8 @@ fn a_bad_scan_is_counted_and_the_others_are_read() {
     let (records, report) = read(&text).unwrap();
     assert_eq!(records.len(), 5);
     assert_eq!((report.rows_read, report.n_problems()), (2, 4));
-    assert_eq!(report.problems[&ProblemKind::Inconsistent], 1);
-    assert_eq!(report.problems[&ProblemKind::NotANumber], 3);
+    assert_eq!(report.problems[&RowProblemKind::Inconsistent], 1);
+    assert_eq!(report.problems[&RowProblemKind::NotANumber], 3);
     assert_eq!(report.examples.iter().map(|problem| problem.row).collect::<Vec<_>>(), [2, 3, 4, 5]);
 }
 
@@ -92,7 +92,7 @@ fn nan_and_infinity_in_json_are_missing_beams() {
     assert_eq!(scans.len(), 3);
     assert_eq!(scans.iter().map(|scan| scan.echoes().count()).collect::<Vec<_>>(), [176, 180, 180]);
     assert_eq!((report.rows_read, report.n_problems()), (3, 1));
-    assert_eq!((report.examples[0].row, report.examples[0].kind), (3, ProblemKind::NotFinite));
+    assert_eq!((report.examples[0].row, report.examples[0].kind), (3, RowProblemKind::NotFinite));
     assert_eq!(report.end, LogEnd::Complete);
 }
 
@@ -101,7 +101,7 @@ fn a_scan_years_off_is_left_out_and_counted() {
     let text = document(&[entry("1.3e9", 180, "0"), entry("1300000001", 180, "0"), entry("5", 180, "9")]);
     let (records, report) = read(&text).unwrap();
     assert_eq!(records[0].stamp.seconds(), 1.3e9);
-    assert_eq!((report.rows_read, report.problems[&ProblemKind::BadStamp]), (2, 1));
+    assert_eq!((report.rows_read, report.problems[&RowProblemKind::BadStamp]), (2, 1));
 }
 
 #[test]

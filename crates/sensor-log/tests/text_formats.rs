@@ -5,8 +5,8 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Detection, DetectionTarget, LogError, LogFormat, OpenOptions, PoseKind, ProblemKind, ReadReport, Record,
-    RecordData, Stamp, TrueLandmark, Velocity, open,
+    Detection, DetectionTarget, LogError, LogFormat, OpenOptions, PoseKind, ReadReport, Record, RecordData,
+    RowProblemKind, Stamp, TrueLandmark, Velocity, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -121,7 +121,7 @@ fn tum_headings_come_from_the_quaternion_for_both_signs() {
         assert!((heading - expected).abs() < 1e-15, "{heading} instead of {expected}");
     }
     assert_eq!(headings.len(), 3);
-    assert_eq!(report.problems[&ProblemKind::Inconsistent], 1);
+    assert_eq!(report.problems[&RowProblemKind::Inconsistent], 1);
 }
 
 #[test]
@@ -135,10 +135,10 @@ fn every_kind_of_bad_row_is_counted_and_none_stops_the_reading() {
     assert_eq!(records.len(), 2);
     let rows: Vec<u64> = report.examples.iter().map(|problem| problem.row).collect();
     assert_eq!(rows, [2, 3, 4, 5, 6, 7]);
-    assert_eq!(report.problems[&ProblemKind::ColumnCount], 1);
-    assert_eq!(report.problems[&ProblemKind::NotFinite], 1);
-    assert_eq!(report.problems[&ProblemKind::NotANumber], 1);
-    assert_eq!(report.problems[&ProblemKind::Unrecognized], 3);
+    assert_eq!(report.problems[&RowProblemKind::ColumnCount], 1);
+    assert_eq!(report.problems[&RowProblemKind::NotFinite], 1);
+    assert_eq!(report.problems[&RowProblemKind::NotANumber], 1);
+    assert_eq!(report.problems[&RowProblemKind::Unrecognized], 3);
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_utias_row_years_off_is_left_out_and_counted() {
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     assert_eq!(records.first().map(|record| record.stamp.seconds()), Some(1_288_971_842.0));
     assert_eq!(records.last().map(|record| record.stamp.seconds()), Some(1_288_971_850.0));
-    assert_eq!(report.problems[&ProblemKind::BadStamp], 2);
+    assert_eq!(report.problems[&RowProblemKind::BadStamp], 2);
     let rows: Vec<u64> = report.examples.iter().map(|problem| problem.row).collect();
     assert_eq!(rows, [5, 10]);
 }
@@ -215,7 +215,7 @@ fn poses_after_a_clock_set_back_are_not_sorted_in() {
     let (_, records, report) = read_text(folder.path(), "poses.tum", text.as_bytes());
     assert_eq!(records.len(), 30);
     assert!(records.iter().all(|record| record.data == RecordData::EstimatedPose(Pose2::new(0.0, 0.0, 0.0))));
-    assert_eq!((report.rows_read, report.problems[&ProblemKind::TooLate]), (30, 20));
+    assert_eq!((report.rows_read, report.problems[&RowProblemKind::TooLate]), (30, 20));
     assert_eq!(report.warnings.iter().map(|warning| warning.name).collect::<Vec<_>>(), ["clock_set_back"]);
 }
 

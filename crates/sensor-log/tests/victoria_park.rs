@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, OpenOptions, ProblemKind, Record,
-    RecordData, Stamp, TruePosition, open,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, OpenOptions, Record, RecordData,
+    RowProblemKind, Stamp, TruePosition, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -57,12 +57,12 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
     assert_eq!(count(|data| matches!(data, RecordData::TruePosition(_))), 2);
     assert!(records.is_sorted_by_key(|record| record.stamp));
     for kind in [
-        ProblemKind::OutOfOrder,
-        ProblemKind::NotFinite,
-        ProblemKind::ColumnCount,
-        ProblemKind::BadStamp,
-        ProblemKind::NotANumber,
-        ProblemKind::Inconsistent,
+        RowProblemKind::OutOfOrder,
+        RowProblemKind::NotFinite,
+        RowProblemKind::ColumnCount,
+        RowProblemKind::BadStamp,
+        RowProblemKind::NotANumber,
+        RowProblemKind::Inconsistent,
     ] {
         assert_eq!(report.problems.get(&kind), Some(&1), "{kind}");
     }
@@ -100,5 +100,5 @@ fn a_fifth_column_says_which_tree_it_is_where_somebody_knows() {
         _ => None,
     });
     assert_eq!(look.unwrap(), [DetectionTarget::Landmark(7), DetectionTarget::Unlabelled]);
-    assert_eq!(report.problems.get(&ProblemKind::NotANumber), Some(&1));
+    assert_eq!(report.problems.get(&RowProblemKind::NotANumber), Some(&1));
 }

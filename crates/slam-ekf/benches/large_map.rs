@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    CovarianceUpdate, EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, Observation,
+    CovarianceUpdate, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, OdometryMotion,
     RangeBearing, RangeBearingSensor, SlamParams,
 };
 
@@ -69,7 +69,7 @@ fn run(world: &World, map: CovarianceUpdate, steps: &[Step]) -> Vec<f64> {
     let params = SlamParams { covariance_update: map, ..SlamParams::default() };
     let mut slam =
         EkfSlam::new(RangeBearingSensor::default(), params, world.start()).expect("valid parameters");
-    let motion = IncrementMotion::default();
+    let motion = OdometryMotion::default();
     let mut take = |step: &Step| {
         #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
         let start = std::time::Instant::now();

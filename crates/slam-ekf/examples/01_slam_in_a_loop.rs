@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamError,
+    EkfSlam, KnownIds, LandmarkId, Observation, OdometryMotion, RangeBearing, RangeBearingSensor, SlamError,
     SlamParams,
 };
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), SlamError> {
 
     // 1. Say how good the sensor is, and how good the odometry.
     let sensor = RangeBearingSensor { range_sigma: 0.05, bearing_sigma: 0.01, ..Default::default() };
-    let motion = IncrementMotion::default();
+    let motion = OdometryMotion::default();
 
     // 2. Start where the robot stands; that is the origin of the map.
     let mut slam = EkfSlam::new(sensor, SlamParams::default(), Pose2::new(0.0, 0.0, 0.0))?;

@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, NewLandmark, Observation,
-    ObservationOutcome, SlamError, SlamParams, laws,
+    EkfSlam, KnownIds, LandmarkId, LandmarkModel, NewLandmark, Observation, ObservationOutcome,
+    OdometryMotion, SlamError, SlamParams, laws,
 };
 
 /// Distances to beacons, with a standard deviation in metres. The Jacobians are left to the trait, which takes them numerically.
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             error(&mut rng, 0.01),
         ));
         by_odometry = by_odometry.compose(&measured);
-        slam.predict(&IncrementMotion::default(), &measured)?;
+        slam.predict(&OdometryMotion::default(), &measured)?;
         listen(&mut slam, &truth, &beacons, &mut rng)?;
     }
 

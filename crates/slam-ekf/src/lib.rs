@@ -9,8 +9,8 @@
 //! gate         chi-squared test of each innovation  O(k)      [ObservationOutcome::Rejected]
 //! correct      all accepted observations jointly    O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new landmarks              O(n)      tentative until confirmed
-//! merge        duplicates                           O(n²)     [MergingParams]
-//! remove       tentative ones not observed again    O(n²)     [ConfirmationParams]
+//! merge        duplicates                           O(n²)     [LandmarkMergingParams]
+//! remove       tentative ones not observed again    O(n²)     [LandmarkConfirmationParams]
 //! ```
 //!
 //! With [`CovarianceUpdate::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
@@ -42,15 +42,15 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    ConfirmationParams, CovarianceUpdate, EkfSlam, LandmarkEstimate, LinearizationPoint, MergingParams,
-    OutlierRule, PredictedMeasurement, SlamParams, UpdateOrder,
+    CovarianceUpdate, EkfSlam, LandmarkConfirmationParams, LandmarkEstimate, LandmarkMergingParams,
+    LinearizationPoint, OutlierRule, PredictedMeasurement, SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
     AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
-    DriftingPoseSensor, IncrementMotion, MonobotMotion, MonobotSensor, MountedSensor, PLANAR_SYMMETRIES,
-    RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
-    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    DriftingPoseSensor, MonobotMotion, MonobotSensor, MotionWithRangeScale, MountedSensor, OdometryMotion,
+    PLANAR_SYMMETRIES, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
+    RelativePosition, RelativePositionSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};

@@ -7,8 +7,9 @@ use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_slam_ekf::{
-    ConfirmationParams, CovarianceUpdate, EkfSlam, IncrementMotion, KnownIds, LandmarkId, Observation,
-    ObservationOutcome, OutlierRule, RangeBearing, RangeBearingSensor, SlamParams, UpdateOrder,
+    CovarianceUpdate, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, Observation,
+    ObservationOutcome, OdometryMotion, OutlierRule, RangeBearing, RangeBearingSensor, SlamParams,
+    UpdateOrder,
 };
 
 type Slam = EkfSlam<RangeBearingSensor>;
@@ -76,7 +77,7 @@ fn lap(params: SlamParams) -> String {
         let [by_full, by_compressed] = [0, 1].map(|which| {
             let slam = &mut slams[which];
             change_map(slam, k, &landmarks);
-            slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
+            slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
             slam.update(&observations, &mut KnownIds).unwrap().outcomes
         });
         assert_eq!(kinds(&by_full), kinds(&by_compressed), "step {k}");
@@ -126,7 +127,8 @@ fn change_map(slam: &mut Slam, step: usize, landmarks: &[[f64; 2]]) {
 
 #[test]
 fn nobody_can_tell_a_compressed_map_from_a_full_one() {
-    let confirmation = ConfirmationParams { max_missed: Some(6), ..ConfirmationParams::default() };
+    let confirmation =
+        LandmarkConfirmationParams { max_missed: Some(6), ..LandmarkConfirmationParams::default() };
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for outliers in [OutlierRule::Downweight, OutlierRule::Reject] {
             let seen = lap(SlamParams {

@@ -3,7 +3,7 @@
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, RangeBearing,
+    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, LandmarkModel, Observation, RangeBearing,
     RangeBearingSensor, SlamError, SlamParams,
 };
 
@@ -12,7 +12,7 @@ fn sensor() -> RangeBearingSensor {
     RangeBearingSensor { sensor_range: 5.0, half_field_of_view: 1.0, ..RangeBearingSensor::default() }
 }
 
-fn slam(confirmation: ConfirmationParams) -> EkfSlam<RangeBearingSensor> {
+fn slam(confirmation: LandmarkConfirmationParams) -> EkfSlam<RangeBearingSensor> {
     let params = SlamParams { confirmation, ..SlamParams::default() };
     EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
 }
@@ -57,8 +57,10 @@ fn a_sensor_should_see_what_is_within_reach_and_view() {
 #[test]
 fn tentative_landmark_survives_the_allowed_misses() {
     for max_missed in [0, 1, 5] {
-        let mut slam =
-            slam(ConfirmationParams { max_missed: Some(max_missed), ..ConfirmationParams::default() });
+        let mut slam = slam(LandmarkConfirmationParams {
+            max_missed: Some(max_missed),
+            ..LandmarkConfirmationParams::default()
+        });
         look(&mut slam, &[AHEAD]);
         assert_eq!(looks_survived(&mut slam, 1), Some(max_missed + 1), "max_missed {max_missed}");
     }
@@ -67,7 +69,8 @@ fn tentative_landmark_survives_the_allowed_misses() {
 #[test]
 fn looks_that_could_not_show_a_landmark_do_not_count() {
     for hidden in [(1, 5.5, 0.0), (1, 3.0, 1.2)] {
-        let mut slam = slam(ConfirmationParams { max_missed: Some(2), ..ConfirmationParams::default() });
+        let mut slam =
+            slam(LandmarkConfirmationParams { max_missed: Some(2), ..LandmarkConfirmationParams::default() });
         look(&mut slam, &[hidden]);
         assert_eq!(looks_survived(&mut slam, 1), None, "{hidden:?}");
     }
@@ -75,8 +78,11 @@ fn looks_that_could_not_show_a_landmark_do_not_count() {
 
 #[test]
 fn a_sighting_renews_the_patience() {
-    let mut slam =
-        slam(ConfirmationParams { n_detections: 3, max_missed: Some(2), ..ConfirmationParams::default() });
+    let mut slam = slam(LandmarkConfirmationParams {
+        n_detections: 3,
+        max_missed: Some(2),
+        ..LandmarkConfirmationParams::default()
+    });
     look(&mut slam, &[AHEAD]);
     look(&mut slam, &[]);
     look(&mut slam, &[]);
@@ -86,8 +92,11 @@ fn a_sighting_renews_the_patience() {
 
 #[test]
 fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
-    let confirmation =
-        ConfirmationParams { max_missed: Some(2), min_detection_rate: 0.5, ..ConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        max_missed: Some(2),
+        min_detection_rate: 0.5,
+        ..LandmarkConfirmationParams::default()
+    };
     let mut slam = slam(confirmation);
     for _ in 0..4 {
         look(&mut slam, &[AHEAD]);
@@ -99,8 +108,11 @@ fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
 
 #[test]
 fn a_share_is_not_judged_before_patience_is_out() {
-    let confirmation =
-        ConfirmationParams { max_missed: Some(7), min_detection_rate: 1.0, ..ConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        max_missed: Some(7),
+        min_detection_rate: 1.0,
+        ..LandmarkConfirmationParams::default()
+    };
     let mut slam = slam(confirmation);
     look(&mut slam, &[AHEAD]);
     look(&mut slam, &[AHEAD]);
@@ -109,8 +121,10 @@ fn a_share_is_not_judged_before_patience_is_out() {
 
 #[test]
 fn confirmed_landmark_stays_without_share_or_patience() {
-    let share_only = ConfirmationParams { min_detection_rate: 1.0, ..ConfirmationParams::default() };
-    let patience_only = ConfirmationParams { max_missed: Some(1), ..ConfirmationParams::default() };
+    let share_only =
+        LandmarkConfirmationParams { min_detection_rate: 1.0, ..LandmarkConfirmationParams::default() };
+    let patience_only =
+        LandmarkConfirmationParams { max_missed: Some(1), ..LandmarkConfirmationParams::default() };
     for confirmation in [share_only, patience_only] {
         let mut slam = slam(confirmation);
         look(&mut slam, &[AHEAD]);
@@ -121,8 +135,11 @@ fn confirmed_landmark_stays_without_share_or_patience() {
 
 #[test]
 fn an_anchor_stays_whatever_is_seen() {
-    let confirmation =
-        ConfirmationParams { max_missed: Some(0), min_detection_rate: 1.0, ..ConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        max_missed: Some(0),
+        min_detection_rate: 1.0,
+        ..LandmarkConfirmationParams::default()
+    };
     let mut slam = slam(confirmation);
     slam.add_anchor(LandmarkId(1), [3.0, 0.0].into()).unwrap();
     assert_eq!(looks_survived(&mut slam, 1), None);
@@ -131,7 +148,8 @@ fn an_anchor_stays_whatever_is_seen() {
 #[test]
 fn a_share_is_between_nothing_and_all() {
     for share in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
-        let confirmation = ConfirmationParams { min_detection_rate: share, ..ConfirmationParams::default() };
+        let confirmation =
+            LandmarkConfirmationParams { min_detection_rate: share, ..LandmarkConfirmationParams::default() };
         let params = SlamParams { confirmation, ..SlamParams::default() };
         let built = EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0));
         assert!(

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LinearizationPoint, RangeBearingSensor, SlamParams,
+    EkfSlam, KnownIds, LandmarkId, LinearizationPoint, OdometryMotion, RangeBearingSensor, SlamParams,
 };
 
 const N_RUNS: u64 = 60;
@@ -20,7 +20,7 @@ const N_STEPS: usize = 30;
 fn average_nees(belief: f64) -> f64 {
     let [x, _, turn] = common::ODOMETRY.map(|sigma| sigma * belief);
     let [range_sigma, bearing_sigma] = common::SIGHTING.map(|sigma| sigma * belief);
-    let motion = IncrementMotion {
+    let motion = OdometryMotion {
         translation_variance_per_meter: 0.0,
         heading_variance_per_meter: 0.0,
         heading_variance_per_radian: 0.0,
@@ -68,7 +68,7 @@ fn share_outside_on_a_long_loop(linearization: LinearizationPoint, n_anchors: us
         };
         let landmarks = world.landmarks(60, &mut rng);
         let [x, _, turn] = world.odometry;
-        let motion = IncrementMotion {
+        let motion = OdometryMotion {
             translation_variance_per_meter: 0.0,
             heading_variance_per_meter: 0.0,
             heading_variance_per_radian: 0.0,

@@ -8,9 +8,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 use wayfix_slam_ekf::{
-    ConfirmationParams, CovarianceUpdate, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
+    CovarianceUpdate, DataAssociation, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId,
     LandmarkModel, NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, ObservationOutcome,
-    OutlierRule, RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
+    OdometryMotion, OutlierRule, RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
 };
 
 /// Eight filters take turns: a million steps together. Four more have a compressed map.
@@ -61,10 +61,10 @@ impl MotionModel for Pushed {
     type Control = (Pose2<f64>, Matrix3<f64>);
 
     fn propagate(&self, pose: &Pose2<f64>, (increment, _): &Self::Control) -> Pose2<f64> {
-        IncrementMotion::default().propagate(pose, increment)
+        OdometryMotion::default().propagate(pose, increment)
     }
     fn jacobian(&self, pose: &Pose2<f64>, (increment, _): &Self::Control) -> Matrix3<f64> {
-        IncrementMotion::default().jacobian(pose, increment)
+        OdometryMotion::default().jacobian(pose, increment)
     }
     fn noise(&self, _: &Pose2<f64>, (_, noise): &Self::Control) -> Matrix3<f64> {
         *noise
@@ -262,7 +262,8 @@ fn is_never_poisoned(map: CovarianceUpdate, rules: &[OutlierRule], mut seed: u64
     let mut tallies = Vec::new();
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for &outliers in rules {
-            let confirmation = ConfirmationParams { max_missed: Some(5), ..ConfirmationParams::default() };
+            let confirmation =
+                LandmarkConfirmationParams { max_missed: Some(5), ..LandmarkConfirmationParams::default() };
             let params = SlamParams {
                 update_order: order,
                 outlier_rule: outliers,

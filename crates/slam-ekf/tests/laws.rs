@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, laws as general};
 use wayfix_slam_ekf::{
-    AckermannControl, AckermannMotion, IncrementMotion, LandmarkModel, MountedSensor, NewLandmark,
-    RangeBearing, RangeBearingSensor, RelativePositionSensor, ScaledMotion, ScaledPose,
-    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, laws,
+    AckermannControl, AckermannMotion, LandmarkModel, MotionWithRangeScale, MountedSensor, NewLandmark,
+    OdometryMotion, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
+    RelativePositionSensor, VelocityControl, VelocityMotion, laws,
 };
 
 fn poses() -> Vec<Pose2<f64>> {
@@ -21,8 +21,9 @@ fn poses() -> Vec<Pose2<f64>> {
         .collect()
 }
 
-fn scaled(poses: &[Pose2<f64>]) -> Vec<ScaledPose> {
-    let pair = |(pose, log_range_scale): (&Pose2<f64>, f64)| ScaledPose { pose: *pose, log_range_scale };
+fn scaled(poses: &[Pose2<f64>]) -> Vec<PoseWithRangeScale> {
+    let pair =
+        |(pose, log_range_scale): (&Pose2<f64>, f64)| PoseWithRangeScale { pose: *pose, log_range_scale };
     poses.iter().zip([0.0, 0.05, -0.1, 0.3, 1e-8]).map(pair).collect()
 }
 
@@ -36,10 +37,10 @@ fn of_every_landmark_model() {
     let sensor = RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, ..Default::default() };
     laws::landmark_model(&sensor, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&RelativePositionSensor { sigma: 0.1 }, &poses(), &landmarks()).unwrap();
-    laws::landmark_model(&ScaledRangeBearingSensor(sensor), &scaled(&poses()), &landmarks()).unwrap();
+    laws::landmark_model(&RangeBearingSensorWithScale(sensor), &scaled(&poses()), &landmarks()).unwrap();
     let mounted = MountedSensor { sensor, mount: Pose2::new(0.3, -0.2, 2.0) };
     laws::landmark_model(&mounted, &poses(), &landmarks()).unwrap();
-    laws::landmark_model(&ScaledRangeBearingSensor(mounted), &scaled(&poses()), &landmarks()).unwrap();
+    laws::landmark_model(&RangeBearingSensorWithScale(mounted), &scaled(&poses()), &landmarks()).unwrap();
 }
 
 /// Near and far, on either side of the robots, through the origin, and with a normal across the wrap.
@@ -79,12 +80,12 @@ fn of_every_motion() {
     let increments = [Pose2::new(0.3, -0.1, 0.2), Pose2::new(0.0, 0.0, -3.0), Pose2::new(0.0, 0.0, 0.0)];
     let cases: Vec<_> =
         poses().into_iter().flat_map(|pose| increments.iter().map(move |u| (pose, u))).collect();
-    let with_steps = IncrementMotion {
+    let with_steps = OdometryMotion {
         translation_variance_per_step: 1e-4,
         heading_variance_per_step: 1e-5,
         ..Default::default()
     };
-    general::motion(&IncrementMotion::default(), &cases).unwrap();
+    general::motion(&OdometryMotion::default(), &cases).unwrap();
     general::motion(&with_steps, &cases).unwrap();
 
     let control = |linear, angular| VelocityControl { linear, angular, duration: 0.4 };
@@ -104,7 +105,7 @@ fn of_every_motion() {
     general::motion(&AckermannMotion::default(), &driven).unwrap();
     let cases: Vec<_> =
         scaled(&poses()).into_iter().flat_map(|state| controls.iter().map(move |u| (state, u))).collect();
-    general::motion(&ScaledMotion(lossy), &cases).unwrap();
+    general::motion(&MotionWithRangeScale(lossy), &cases).unwrap();
 }
 
 /// A range-bearing sensor with one mistake.

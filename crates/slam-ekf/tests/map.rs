@@ -8,9 +8,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_slam_ekf::{
-    Association, ConfirmationParams, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
-    NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome, OutlierRule, RangeBearing,
-    RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams,
+    Association, DataAssociation, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId,
+    NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome, OdometryMotion, OutlierRule,
+    RangeBearing, RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams,
 };
 
 const SEED: u64 = 7;
@@ -38,7 +38,7 @@ fn uncertainty_after_a_lap(anchored: bool, n_steps: usize) -> f64 {
         }
     }
     for step in &steps {
-        slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
+        slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
         slam.update(&step.observations, &mut KnownIds).unwrap();
     }
     slam.robot_covariance().fixed_view::<2, 2>(0, 0).trace()
@@ -65,8 +65,8 @@ fn the_estimate_moves_to_the_truth_with_both_sensors() {
         dead_reckoning = dead_reckoning.retract(&common::start().local(&common::start().retract(
             &nalgebra::Vector3::new(step.increment.x(), step.increment.y(), step.increment.heading()),
         )));
-        by_range.predict(&IncrementMotion::default(), &step.increment).unwrap();
-        by_position.predict(&IncrementMotion::default(), &step.increment).unwrap();
+        by_range.predict(&OdometryMotion::default(), &step.increment).unwrap();
+        by_position.predict(&OdometryMotion::default(), &step.increment).unwrap();
         by_range.update(&step.observations, &mut KnownIds).unwrap();
         let positions: Vec<_> = step
             .observations
@@ -93,7 +93,7 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
     let landmarks = common::landmarks(6, &mut rng);
     let mut slam = slam(SlamParams::default());
     for step in common::drive(10, &landmarks, &mut rng) {
-        slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
+        slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
         slam.update(&step.observations, &mut KnownIds).unwrap();
     }
     let before: Vec<_> = slam.landmarks().filter(|landmark| landmark.id != LandmarkId(1)).collect();
@@ -107,8 +107,11 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 
 #[test]
 fn false_first_detection_is_replaced_and_unseen_one_removed() {
-    let confirmation =
-        ConfirmationParams { n_detections: 2, max_missed: Some(3), ..ConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        n_detections: 2,
+        max_missed: Some(3),
+        ..LandmarkConfirmationParams::default()
+    };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let mut look = |observations: &[Observation<RangeBearing>]| {
         slam.update(observations, &mut KnownIds).unwrap().outcomes
@@ -137,7 +140,8 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
 
 #[test]
 fn outliers_are_rejected_or_count_little_and_say_so() {
-    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
+    let confirmation =
+        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
     for outliers in [OutlierRule::Reject, OutlierRule::Downweight] {
         let mut slam = slam(SlamParams { outlier_rule: outliers, confirmation, ..SlamParams::default() });
         slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -162,7 +166,8 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
 #[test]
 fn nearest_neighbour_pairs_once_and_skips_ambiguous() {
     let mut rule = NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
-    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
+    let confirmation =
+        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let unlabelled =
         |range, bearing| Observation { label: None, measurement: RangeBearing::new(range, bearing) };
@@ -199,7 +204,8 @@ fn bad_parameters_and_landmarks_are_typed_errors() {
         ));
     }
     for restart_nis in [0.0, -1.0, f64::NAN] {
-        let confirmation = ConfirmationParams { restart_nis, ..ConfirmationParams::default() };
+        let confirmation =
+            LandmarkConfirmationParams { restart_nis, ..LandmarkConfirmationParams::default() };
         let params = SlamParams { confirmation, ..SlamParams::default() };
         assert!(EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(), "{restart_nis}");
     }

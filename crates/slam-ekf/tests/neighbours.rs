@@ -8,16 +8,17 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    ConfirmationParams, CorrelatedNoise, EkfSlam, IncrementMotion, JointCompatibility,
-    JointCompatibilityParams, KnownIds, LandmarkId, LandmarkMerge, MergingParams, NearestNeighbour,
-    NearestNeighbourParams, Observation, ObservationOutcome, RangeBearing, RangeBearingSensor, SlamError,
-    SlamParams,
+    CorrelatedNoise, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
+    LandmarkConfirmationParams, LandmarkId, LandmarkMerge, LandmarkMergingParams, NearestNeighbour,
+    NearestNeighbourParams, Observation, ObservationOutcome, OdometryMotion, RangeBearing,
+    RangeBearingSensor, SlamError, SlamParams,
 };
 
 const SEED: u64 = 11;
 
-fn slam(sensor: RangeBearingSensor, merging: Option<MergingParams>) -> EkfSlam<RangeBearingSensor> {
-    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
+fn slam(sensor: RangeBearingSensor, merging: Option<LandmarkMergingParams>) -> EkfSlam<RangeBearingSensor> {
+    let confirmation =
+        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
     let params = SlamParams { confirmation, merging, ..SlamParams::default() };
     EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
 }
@@ -107,7 +108,7 @@ fn second_detection_near_a_match_is_another_landmark() {
 
 #[test]
 fn landmarks_below_the_least_distance_are_merged() {
-    let merging = Some(MergingParams { min_separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(LandmarkMergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     for _ in 0..20 {
         slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -127,7 +128,7 @@ fn landmarks_below_the_least_distance_are_merged() {
 
 #[test]
 fn two_that_may_stand_apart_stay_two() {
-    let merging = Some(MergingParams { min_separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(LandmarkMergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     // 0.1 m apart, but seen once each: two standard deviations of their difference are 2 · √(2 · (0.05² + 0.02²)) = 0.15 m, and 0.1 m is left.
     let report = slam.update(&[labelled(1, 2.0, 0.0), labelled(2, 2.1, 0.0)], &mut KnownIds).unwrap();
@@ -145,7 +146,7 @@ fn merge_equals_an_update_that_both_coincide() {
     let mut slam =
         EkfSlam::new(RangeBearingSensor::default(), SlamParams::default(), common::start()).unwrap();
     for step in common::drive(10, &landmarks, &mut rng) {
-        slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
+        slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
         slam.update(&step.observations, &mut KnownIds).unwrap();
     }
     let ids: Vec<LandmarkId> = slam.landmarks().map(|landmark| landmark.id).collect();
@@ -170,8 +171,8 @@ fn impossible_merge_changes_nothing() {
     assert_eq!(format!("{slam:?}"), before);
     for bad in [f64::NAN, -1.0, f64::INFINITY] {
         for merging in [
-            MergingParams { min_separation: bad, n_sigmas: 2.0 },
-            MergingParams { min_separation: 0.1, n_sigmas: bad },
+            LandmarkMergingParams { min_separation: bad, n_sigmas: 2.0 },
+            LandmarkMergingParams { min_separation: 0.1, n_sigmas: bad },
         ] {
             let params = SlamParams { merging: Some(merging), ..SlamParams::default() };
             let refused = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0));

@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, Pose2, SensorModel};
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, OutlierRule,
+    EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, OdometryMotion, OutlierRule,
     RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams, laws,
     observability::ObservabilityRecorder,
 };
@@ -39,7 +39,7 @@ fn lap(n_anchors: usize, camera: bool) -> ObservabilityRecorder {
         slam.add_anchor(LandmarkId(id as u32), Vector2::from(*place)).unwrap();
     }
     let mut recorder = ObservabilityRecorder::new(&slam);
-    let motion = IncrementMotion::default();
+    let motion = OdometryMotion::default();
     for step in common::drive(40, &landmarks, &mut rng) {
         recorder.record_motion(&motion.jacobian(slam.robot(), &step.increment));
         slam.predict(&motion, &step.increment).unwrap();

@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Pose2, wrap_angle};
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, KnownIds, LandmarkId, OutlierRule, RangeBearingSensor,
-    SlamParams, UpdateOrder,
+    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, OdometryMotion, OutlierRule,
+    RangeBearingSensor, SlamParams, UpdateOrder,
 };
 
 const SEED: u64 = 20_261_121;
@@ -104,9 +104,9 @@ impl Textbook {
 }
 
 /// Per step as the simulation draws it; no gate, so that both see the same.
-fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, IncrementMotion) {
+fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, OdometryMotion) {
     let [x, _, turn] = common::ODOMETRY;
-    let motion = IncrementMotion {
+    let motion = OdometryMotion {
         translation_variance_per_meter: 0.0,
         heading_variance_per_meter: 0.0,
         heading_variance_per_radian: 0.0,
@@ -117,7 +117,7 @@ fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, IncrementMotion) 
         outlier_rule: OutlierRule::Reject,
         gate_probability: 1.0 - 1e-15,
         update_order: order,
-        confirmation: ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() },
+        confirmation: LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() },
         ..SlamParams::default()
     };
     (EkfSlam::new(RangeBearingSensor::default(), params, common::start()).unwrap(), motion)

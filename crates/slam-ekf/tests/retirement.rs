@@ -8,14 +8,14 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Manifold;
 use wayfix_gaussian_core::ChiSquaredBand;
-use wayfix_slam_ekf::{EkfSlam, IncrementMotion, KnownIds, LandmarkId, RangeBearingSensor, SlamParams};
+use wayfix_slam_ekf::{EkfSlam, KnownIds, LandmarkId, OdometryMotion, RangeBearingSensor, SlamParams};
 
 const N_RUNS: u64 = 60;
 
 /// Two laps on a circle of 3 m, landmarks retired after so many revisions.
 fn drive(seed: u64, retire_after: Option<usize>) -> (EkfSlam<RangeBearingSensor>, f64) {
     let [x, _, turn] = common::ODOMETRY;
-    let motion = IncrementMotion {
+    let motion = OdometryMotion {
         translation_variance_per_meter: 0.0,
         heading_variance_per_meter: 0.0,
         heading_variance_per_radian: 0.0,

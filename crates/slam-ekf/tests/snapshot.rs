@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, LandmarkId, LinearizationPoint, NearestNeighbour,
-    NearestNeighbourParams, RangeBearingSensor, SlamError, SlamParams, SlamSnapshot,
+    EkfSlam, LandmarkConfirmationParams, LandmarkId, LinearizationPoint, NearestNeighbour,
+    NearestNeighbourParams, OdometryMotion, RangeBearingSensor, SlamError, SlamParams, SlamSnapshot,
 };
 
 const SEED: u64 = 11;
@@ -18,8 +18,11 @@ type Saved = SlamSnapshot<Pose2<f64>, Vector2<f64>>;
 
 /// Landmarks that nobody told apart, some of which are forgotten again: the filter's whole memory is at work.
 fn params(linearization: LinearizationPoint) -> SlamParams {
-    let confirmation =
-        ConfirmationParams { n_detections: 4, max_missed: Some(2), ..ConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        n_detections: 4,
+        max_missed: Some(2),
+        ..LandmarkConfirmationParams::default()
+    };
     SlamParams { confirmation, linearization_point: linearization, ..SlamParams::default() }
 }
 
@@ -45,7 +48,7 @@ fn drive(stops: &[usize], linearization: LinearizationPoint) -> (Saved, u32) {
             slam = EkfSlam::resume(sensor, params, slam.snapshot()).unwrap();
             rule = self::rule().numbering_from(rule.next_id());
         }
-        slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
+        slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
         slam.update(&step.observations, &mut rule).unwrap();
     }
     (slam.snapshot(), rule.next_id())

@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint, Observation,
+    EkfSlam, JointCompatibility, JointCompatibilityParams, LinearizationPoint, Observation, OdometryMotion,
     SlamParams, Wall, WallLine, WallMeasurement, WallSensor,
 };
 
@@ -63,7 +63,7 @@ fn lap_at(
     let walls = walls().into_iter().map(|ends| ends.map(|end| place.transform(&end)));
     let walls: Vec<[Vector2<f64>; 2]> = walls.collect();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let motion = IncrementMotion {
+    let motion = OdometryMotion {
         translation_variance_per_meter: 0.0,
         heading_variance_per_meter: 0.0,
         heading_variance_per_radian: 0.0,

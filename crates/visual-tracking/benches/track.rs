@@ -11,9 +11,9 @@ use harness::measure;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_visual_tracking::{
-    ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, Connectivity, CorrelationTracker,
-    CorrelationTrackerParams, HeadTracker, HeadTrackerParams, PixelRect, RgbImage, RowSpans,
-    SlidingHistogram, StructuringElement, Tracker,
+    ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, CorrelationTracker,
+    CorrelationTrackerParams, HeadTracker, HeadTrackerParams, PixelConnectivity, PixelRect, RgbImage,
+    RowSpans, SlidingHistogram, StructuringElement, Tracker,
 };
 
 const SIZE: (usize, usize) = (320, 240);
@@ -37,9 +37,9 @@ fn main() {
     measure("track segment, 300 sets", 50, || image.segment_all(&sets));
     let mask = image.segment(&set).expect("the same bins");
     measure("track erode 3x3", 1000, || mask.eroded(StructuringElement::Square { radius: 1 }));
-    measure("track Euler number", 1000, || black_box(&mask).euler_number(Connectivity::Eight));
+    measure("track Euler number", 1000, || black_box(&mask).euler_number(PixelConnectivity::Eight));
     let blob = mask.opened(StructuringElement::Square { radius: 1 });
-    measure("track blobs", 500, || blob.blobs(Connectivity::Eight));
+    measure("track blobs", 500, || blob.blobs(PixelConnectivity::Eight));
     measure("track contour", 500, || blob.outer_contour());
 
     let hue_saturation = ColorQuantizer::new(ColorSpace::Hsi, [8, 8, 1]).expect("few bins");

@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{FilmFrame, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BitMask, BoundingBox, ContourTracker, CorrelationTracker, RgbImage, TrackStatus, Tracker,
+    BoundingBox, ContourTracker, CorrelationTracker, PixelMask, RgbImage, TrackStatus, Tracker,
 };
 
 /// Every so many pixels are taken.
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames: Vec<FilmFrame> = SyntheticFilm::named("snail")?.frames()?.collect();
     let pictures: Vec<RgbImage> = frames.iter().map(shrunk).collect::<Result<_, _>>()?;
     let target = &frames[0].target;
-    let mask = BitMask::from_fn(SIZE.0, SIZE.1, |u, v| target.pixels()[STRIDE * (v * target.width() + u)])?;
+    let mask = PixelMask::from_fn(SIZE.0, SIZE.1, |u, v| target.pixels()[STRIDE * (v * target.width() + u)])?;
     match method.as_deref() {
         Some("contour") => watch(
             &mut ContourTracker::from_mask(&pictures[0], &mask, Default::default())?,

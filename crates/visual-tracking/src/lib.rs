@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
 //! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`ColorBinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
-//! | masks | [`BitMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
+//! | masks | [`PixelMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
 //! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
 //! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
 //!
@@ -31,13 +31,13 @@ pub use color::{
 pub use contour::{ContourTracker, ContourTrackerParams, SegmentationAgreement, TrackingCues};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use distribution::{
-    COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
+    AffineColorMap, COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorStateVector, LearnedDynamics,
     PrincipalColors,
 };
 pub use error::TrackingError;
 pub use head::{HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
 pub use image::RgbImage;
-pub use mask::{BitMask, Blob, Blobs, Connectivity, StructuringElement};
+pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
 pub use pixel_rect::PixelRect;
 pub use snake::{AffineMap, AffineSnake, ColorEdges, EdgeSearch, MaskEdges, Outline, SnakeFit, SnakeParams};
 pub use tracker::{TargetEstimate, TrackStatus, Tracker};

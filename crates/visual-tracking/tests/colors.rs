@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BitMask, ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, PixelRect, RgbImage,
+    ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, PixelMask, PixelRect, RgbImage,
     RowSpans, SlidingHistogram, TrackingError,
 };
 
@@ -60,7 +60,7 @@ proptest! {
         prop_assert_eq!(masks.len(), n_sets);
         for (mask, set) in masks.iter().zip(&sets) {
             prop_assert_eq!(mask, &image.segment(set).unwrap());
-            let plain = BitMask::from_fn(width, height, |u, v| {
+            let plain = PixelMask::from_fn(width, height, |u, v| {
                 set.contains(quantizer.bin_of_pixel(picture.get_pixel(u as u32, v as u32).0))
             });
             prop_assert_eq!(mask, &plain.unwrap());
@@ -91,7 +91,7 @@ proptest! {
     fn a_histogram_of_a_mask_counts_its_pixels(width in 1_usize..140, height in 1_usize..20, seed in any::<u64>()) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let image = ColorBinImage::new(&quantizer(), &noise(width, height, &mut rng)).unwrap();
-        let mask = BitMask::from_fn(width, height, |_, _| rng.random()).unwrap();
+        let mask = PixelMask::from_fn(width, height, |_, _| rng.random()).unwrap();
         let histogram = ColorHistogram::of_mask(&image, &mask).unwrap();
         for (bin, &count) in histogram.counts().iter().enumerate() {
             let here = |&i: &usize| usize::from(image.bins()[i]) == bin && mask.get(i % width, i / width);
@@ -126,7 +126,7 @@ fn what_does_not_fit_is_refused_and_changes_nothing() {
     let image = ColorBinImage::new(&few, &picture).unwrap();
     assert!(matches!(image.segment(&ColorBinSet::empty(&more)), Err(TrackingError::Dimension { .. })));
     assert!(image.segment_all(&[ColorBinSet::empty(&few), ColorBinSet::empty(&more)]).is_err());
-    assert!(ColorHistogram::of_mask(&image, &BitMask::full(8, 9).unwrap()).is_err());
+    assert!(ColorHistogram::of_mask(&image, &PixelMask::full(8, 9).unwrap()).is_err());
     for (left, top, width, height) in [(5, 5, 5, 2), (0, 7, 2, 2), (usize::MAX, 0, 2, 2), (0, 0, 0, 2)] {
         let beyond = PixelRect { left, top, width, height };
         assert!(ColorBinImage::within(&few, &picture, &beyond).is_err(), "{beyond:?}");

@@ -10,7 +10,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BitMask, BoundingBox, ColorDynamics, ColorVector, ContourTracker, ContourTrackerParams, Outline,
+    BoundingBox, ColorDynamics, ColorStateVector, ContourTracker, ContourTrackerParams, Outline, PixelMask,
     RgbImage, TrackStatus, Tracker as _, TrackingCues, TrackingError,
 };
 
@@ -143,9 +143,9 @@ fn what_cannot_be_used_is_refused_and_changes_nothing() {
     assert!(ContourTracker::from_box(&picture, &huge, params).is_err());
     let speck = BoundingBox::from_corner(3.2, 3.2, 0.1, 0.1).unwrap();
     assert!(ContourTracker::from_box(&picture, &speck, params).is_err());
-    let other = BitMask::full(SIZE.0 + 1, SIZE.1).unwrap();
+    let other = PixelMask::full(SIZE.0 + 1, SIZE.1).unwrap();
     assert!(ContourTracker::from_mask(&picture, &other, params).is_err());
-    assert!(ContourTracker::from_mask(&picture, &BitMask::empty(SIZE.0, SIZE.1).unwrap(), params).is_err());
+    assert!(ContourTracker::from_mask(&picture, &PixelMask::empty(SIZE.0, SIZE.1).unwrap(), params).is_err());
     for params in [
         ContourTrackerParams { n_samples: 0, ..params },
         ContourTrackerParams { quality_sigma: f64::NAN, ..params },
@@ -211,7 +211,7 @@ fn memory_does_not_grow_with_the_film() {
 
 #[test]
 fn dynamics_of_ones_own_are_used() {
-    let still = ColorDynamics::constant_velocity(0.0, &ColorVector::zeros()).unwrap();
+    let still = ColorDynamics::constant_velocity(0.0, &ColorStateVector::zeros()).unwrap();
     let params = ContourTrackerParams {
         background_odds: 0.0,
         color_memory: 0.0,

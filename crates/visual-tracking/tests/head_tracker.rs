@@ -6,7 +6,7 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BitMask, BoundingBox, HeadTracker, HeadTrackerParams, RgbImage, ScaleSource, TrackStatus, Tracker,
+    BoundingBox, HeadTracker, HeadTrackerParams, PixelMask, RgbImage, ScaleSource, TrackStatus, Tracker,
     TrackingError,
 };
 
@@ -133,13 +133,13 @@ fn a_mask_starts_it_as_a_box_does() {
     let inside = |u: usize, v: usize| {
         ((u as f64 + 0.5 - 50.0) / SEMI_AXES[0]).hypot((v as f64 + 0.5 - 60.0) / SEMI_AXES[1]) <= 1.0
     };
-    let mask = BitMask::from_fn(WIDTH, HEIGHT, inside).unwrap();
+    let mask = PixelMask::from_fn(WIDTH, HEIGHT, inside).unwrap();
     let mut tracker = HeadTracker::from_mask(&shown, &mask, HeadTrackerParams::default()).unwrap();
     let center = [54.0, 61.0];
     let target = tracker.track(&picture(center, 0.35, 1.0, 1.0), &mut rng()).unwrap();
     assert!(target.bounding_box.iou(&head(center, 1.0)) > 0.7);
     assert_eq!(target.outline.len(), 48);
-    let nobody = BitMask::empty(WIDTH, HEIGHT).unwrap();
+    let nobody = PixelMask::empty(WIDTH, HEIGHT).unwrap();
     let refused = HeadTracker::from_mask(&shown, &nobody, HeadTrackerParams::default());
     assert!(matches!(refused, Err(TrackingError::Empty { .. })));
 }

@@ -9,18 +9,18 @@ use plain_mask::Plain;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_visual_tracking::{BitMask, Connectivity, StructuringElement, TrackingError};
+use wayfix_visual_tracking::{PixelConnectivity, PixelMask, StructuringElement, TrackingError};
 
-const BOTH: [Connectivity; 2] = [Connectivity::Four, Connectivity::Eight];
+const BOTH: [PixelConnectivity; 2] = [PixelConnectivity::Four, PixelConnectivity::Eight];
 
 /// Noise of a density between nothing and everything, both included; as it is, or closed to blobs with holes.
-fn mask() -> impl Strategy<Value = BitMask> {
+fn mask() -> impl Strategy<Value = PixelMask> {
     let width = prop_oneof![Just(1), Just(63), Just(64), Just(65), Just(127), Just(128), 1_usize..140];
     (width, 1_usize..40, 0..=8_u32, any::<u64>(), any::<bool>()).prop_map(
         |(width, height, eighths, seed, closed)| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let noise = |_, _| rng.random_range(0..8) < eighths;
-            let noise = BitMask::from_fn(width, height, noise).expect("a valid size");
+            let noise = PixelMask::from_fn(width, height, noise).expect("a valid size");
             if closed { noise.closed(StructuringElement::Cross { radius: 1 }) } else { noise }
         },
     )
@@ -77,7 +77,7 @@ proptest! {
     #[test]
     fn sets_and_measures(a in mask(), seed in any::<u64>()) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let b = BitMask::from_fn(a.width(), a.height(), |_, _| rng.random()).unwrap();
+        let b = PixelMask::from_fn(a.width(), a.height(), |_, _| rng.random()).unwrap();
         let (plain_a, plain_b) = (Plain::of(&a), Plain::of(&b));
         let each = |op: fn(bool, bool) -> bool| plain_a.zip(&plain_b, op);
         prop_assert_eq!(Plain::of(&a.and(&b).unwrap()), each(|a, b| a && b));
@@ -106,14 +106,14 @@ proptest! {
     #[test]
     fn a_crop_is_the_part_behind_its_corner(mask in mask(), corner in (0_usize..150, 0_usize..50), size in (1_usize..150, 1_usize..50)) {
         let cropped = mask.crop(corner, size).unwrap();
-        let expected = BitMask::from_fn(size.0, size.1, |u, v| mask.get(corner.0 + u, corner.1 + v)).unwrap();
+        let expected = PixelMask::from_fn(size.0, size.1, |u, v| mask.get(corner.0 + u, corner.1 + v)).unwrap();
         prop_assert_eq!(cropped, expected);
     }
 
     /// The contour is what Suzuki & Abe call an outer border: the pixels of the blob that share a side with what surrounds it.
     #[test]
     fn contours(mask in mask()) {
-        let blobs = mask.blobs(Connectivity::Eight);
+        let blobs = mask.blobs(PixelConnectivity::Eight);
         for i in 0..blobs.len() {
             let blob = blobs.mask(i).unwrap();
             let contour = blob.outer_contour();
@@ -122,9 +122,9 @@ proptest! {
                 let apart = pixel[0].abs_diff(next[0]).max(pixel[1].abs_diff(next[1]));
                 prop_assert_eq!(apart, usize::from(contour.len() > 1));
             }
-            let mut visited = BitMask::empty(mask.width(), mask.height()).unwrap();
+            let mut visited = PixelMask::empty(mask.width(), mask.height()).unwrap();
             contour.iter().for_each(|&[u, v]| visited.set(u, v, true).unwrap());
-            prop_assert_eq!(visited, blob.without_holes(Connectivity::Eight).boundary());
+            prop_assert_eq!(visited, blob.without_holes(PixelConnectivity::Eight).boundary());
         }
         prop_assert_eq!(mask.outer_contour(), blobs.mask(0).map_or(Vec::new(), |blob| blob.outer_contour()));
     }
@@ -132,28 +132,28 @@ proptest! {
     #[test]
     fn polygons(corners in prop::collection::vec((-20.0..160.0_f64, -10.0..60.0_f64), 0..9), size in (1_usize..150, 1_usize..50)) {
         let corners: Vec<[f64; 2]> = corners.into_iter().map(Into::into).collect();
-        let mask = BitMask::from_polygon(size.0, size.1, &corners).unwrap();
+        let mask = PixelMask::from_polygon(size.0, size.1, &corners).unwrap();
         prop_assert_eq!(Plain::of(&mask), Plain::of_polygon(size, &corners));
     }
 }
 
 #[test]
 fn blobs_are_chosen_by_size_distance_and_overlap() {
-    let mask = BitMask::from_fn(100, 50, |u, v| {
+    let mask = PixelMask::from_fn(100, 50, |u, v| {
         (u < 3 && v < 3) || ((50..60).contains(&u) && (20..30).contains(&v)) || (u == 99 && v > 40)
     })
     .unwrap();
-    let blobs = mask.blobs(Connectivity::Four);
+    let blobs = mask.blobs(PixelConnectivity::Four);
     assert_eq!(blobs.largest(), Some(1));
     for (point, nearest) in [([1.0, 1.0], 0), ([80.0, 49.0], 2), ([-500.0, 400.0], 0), ([55.0, 19.0], 1)] {
         assert_eq!(blobs.nearest(point), Some(nearest), "{point:?}");
     }
     assert_eq!(blobs.nearest([f64::NAN, 0.0]), None);
-    let near_the_edge = BitMask::from_fn(100, 50, |u, v| u > 57 && v > 28).unwrap();
+    let near_the_edge = PixelMask::from_fn(100, 50, |u, v| u > 57 && v > 28).unwrap();
     assert_eq!(blobs.most_overlapping(&near_the_edge), Ok(Some(2)));
     assert_eq!(blobs.most_overlapping(&mask.not()), Ok(None));
     assert_eq!(blobs.mask(3), None);
-    let none = BitMask::empty(9, 9).unwrap().blobs(Connectivity::Four);
+    let none = PixelMask::empty(9, 9).unwrap().blobs(PixelConnectivity::Four);
     assert!(none.is_empty() && none.largest().is_none() && none.nearest([0.0; 2]).is_none());
 }
 
@@ -162,9 +162,9 @@ fn an_element_larger_than_the_mask_fills_or_clears_it() {
     for (width, height) in [(1, 1), (1, 200), (200, 1), (129, 70)] {
         for radius in [200, usize::MAX] {
             let square = StructuringElement::Square { radius };
-            let one = BitMask::from_fn(width, height, |u, v| u == width - 1 && v == height - 1).unwrap();
-            assert_eq!(one.dilated(square), BitMask::full(width, height).unwrap());
-            assert_eq!(one.not().eroded(square), BitMask::empty(width, height).unwrap());
+            let one = PixelMask::from_fn(width, height, |u, v| u == width - 1 && v == height - 1).unwrap();
+            assert_eq!(one.dilated(square), PixelMask::full(width, height).unwrap());
+            assert_eq!(one.not().eroded(square), PixelMask::empty(width, height).unwrap());
         }
     }
 }
@@ -172,14 +172,14 @@ fn an_element_larger_than_the_mask_fills_or_clears_it() {
 #[test]
 fn sizes_that_do_not_fit_are_refused() {
     for (width, height) in [(0, 5), (5, 0), (usize::MAX, 2), (usize::MAX, usize::MAX), (1, 1 << 40)] {
-        assert!(matches!(BitMask::empty(width, height), Err(TrackingError::Extent { .. })));
+        assert!(matches!(PixelMask::empty(width, height), Err(TrackingError::Extent { .. })));
     }
-    let (mut a, b) = (BitMask::full(64, 3).unwrap(), BitMask::full(65, 3).unwrap());
+    let (mut a, b) = (PixelMask::full(64, 3).unwrap(), PixelMask::full(65, 3).unwrap());
     assert!(matches!(a.and(&b), Err(TrackingError::Dimension { .. })));
     assert!(a.or(&b).is_err() && a.and_not(&b).is_err() && a.iou(&b).is_err() && a.overlap(&b).is_err());
-    assert!(a.blobs(Connectivity::Four).most_overlapping(&b).is_err());
+    assert!(a.blobs(PixelConnectivity::Four).most_overlapping(&b).is_err());
     assert!(matches!(a.set(64, 0, false), Err(TrackingError::Outside { .. })));
     assert!(a.set(63, 2, false).is_ok() && !a.get(63, 2) && a.area() == 64 * 3 - 1);
-    assert_eq!(a.crop((usize::MAX, usize::MAX), (7, 7)), BitMask::empty(7, 7));
-    assert_eq!(BitMask::empty(7, 7).unwrap().iou(&BitMask::empty(7, 7).unwrap()), Ok(0.0));
+    assert_eq!(a.crop((usize::MAX, usize::MAX), (7, 7)), PixelMask::empty(7, 7));
+    assert_eq!(PixelMask::empty(7, 7).unwrap().iou(&PixelMask::empty(7, 7).unwrap()), Ok(0.0));
 }

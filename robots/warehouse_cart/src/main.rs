@@ -12,7 +12,7 @@ use cart::Cart;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtractor, LineExtractionParams, Scan};
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint,
+    LandmarkConfirmationParams, EkfSlam, OdometryMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint,
     Observation, WallMeasurement, SlamParams, WallSensor,
 };
 
@@ -21,14 +21,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut cart = Cart::new(start);
 
     let mut extractor = LineExtractor::new(LineExtractionParams::default())?;
-    let motion = IncrementMotion {
+    let motion = OdometryMotion {
         translation_variance_per_meter: 1e-3,
         heading_variance_per_meter: 2e-3,
-        ..IncrementMotion::default()
+        ..OdometryMotion::default()
     };
     let filter = SlamParams {
         linearization_point: LinearizationPoint::FirstEstimates, // laps: the standard form would grow too sure of its heading
-        confirmation: ConfirmationParams { n_detections: 3, max_missed: Some(10), ..ConfirmationParams::default() },
+        confirmation: LandmarkConfirmationParams { n_detections: 3, max_missed: Some(10), ..LandmarkConfirmationParams::default() },
         ..SlamParams::default()
     };
     let mut association = JointCompatibility::new(JointCompatibilityParams::default())?;

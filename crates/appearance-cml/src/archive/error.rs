@@ -1,4 +1,4 @@
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Why bytes are not a map that can be used here.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,5 +46,5 @@ pub enum MapArchiveError {
     },
     /// The parts do not make a map.
     #[error("not a map: {0}")]
-    Map(#[from] AppearanceError),
+    Map(#[from] AppearanceMapError),
 }

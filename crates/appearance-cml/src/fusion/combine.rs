@@ -4,7 +4,7 @@ use wayfix_gaussian_core::{Gaussian, check_covariance, cholesky, symmetrize};
 
 use super::GaussianFusionRule;
 use super::split::{Split, intersect};
-use crate::{AppearanceError, PoseHypothesis};
+use crate::{AppearanceMapError, PoseHypothesis};
 
 /// Makes one Gaussian of two that mean the same place.
 ///
@@ -22,7 +22,7 @@ use crate::{AppearanceError, PoseHypothesis};
 /// let fresh = PoseHypothesis { independent: 1.0, ..a.clone() };
 /// let fused = combine(&fresh, &fresh, GaussianFusionRule::SplitIntersection)?;
 /// assert!((fused.covariance() * 2.0 - belief.covariance()).norm() < 1e-12);
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
@@ -31,7 +31,7 @@ pub fn combine(
     a: &PoseHypothesis,
     b: &PoseHypothesis,
     combination: GaussianFusionRule,
-) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
+) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError> {
     let at = a.gaussian.mean();
     let seen = b.gaussian.in_chart_at(at)?;
     check_covariance("first", a.gaussian.covariance())?;
@@ -64,7 +64,7 @@ fn weighted_intersection(
     a: &Matrix3<f64>,
     (mean_b, b): (&Vector3<f64>, &Matrix3<f64>),
     share: f64,
-) -> Result<(Vector3<f64>, Matrix3<f64>), AppearanceError> {
+) -> Result<(Vector3<f64>, Matrix3<f64>), AppearanceMapError> {
     let information = |covariance| cholesky("intersected", covariance).map(|factor| factor.inverse());
     let (from_a, from_b) = (information(a)? * (1.0 - share), information(b)? * share);
     let factor = cholesky("combined information", &(from_a + from_b))?;
@@ -76,7 +76,7 @@ fn carried(
     at: &Pose2<f64>,
     step: &Vector3<f64>,
     covariance: &Matrix3<f64>,
-) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
+) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError> {
     let mean = at.retract(step);
     let turn = at.chart_jacobian(&mean);
     let mut covariance = turn * covariance * turn.transpose();

@@ -1,7 +1,7 @@
 use wayfix_gaussian_core::Gaussian;
 
 use super::{FusionParams, MixtureWeighting, combine};
-use crate::{AppearanceError, PoseHypothesis, separation_squared};
+use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 
 /// Fuses two mixtures over poses; weights stay as they come out, for the next source to be fused.
 ///
@@ -15,7 +15,7 @@ use crate::{AppearanceError, PoseHypothesis, separation_squared};
 /// use wayfix_appearance_cml::{FusionParams, PoseHypothesis, fuse};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
-/// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceError> {
+/// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceMapError> {
 ///     let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.2, 0.2, 0.1))?;
 ///     Ok(PoseHypothesis::new(weight, gaussian))
 /// };
@@ -23,7 +23,7 @@ use crate::{AppearanceError, PoseHypothesis, separation_squared};
 /// let seen = [at(0.1, 0.4)?];
 /// let fused = PoseHypothesis::into_mixture(fuse(&moved, &seen, &FusionParams::as_published())?)?;
 /// assert!(fused.weight(0) > 0.6 && fused.weight(1) < 0.4); // 0.9 against 0.5
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
@@ -32,7 +32,7 @@ pub fn fuse(
     predicted: &[PoseHypothesis],
     observed: &[PoseHypothesis],
     params: &FusionParams,
-) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
     for hypothesis in predicted.iter().chain(observed) {
         // One that meets no other would pass unseen otherwise.
         Gaussian::new(*hypothesis.gaussian.mean(), *hypothesis.gaussian.covariance())?;
@@ -77,7 +77,7 @@ fn agreeing(
     predicted: &[PoseHypothesis],
     observed: &[PoseHypothesis],
     gate: f64,
-) -> Result<Vec<Pair>, AppearanceError> {
+) -> Result<Vec<Pair>, AppearanceMapError> {
     let mut pairs = Vec::new();
     // What has no weight supports nothing, and must not take away what it meets.
     let heavy = |hypothesis: &&PoseHypothesis| hypothesis.weight != 0.0;

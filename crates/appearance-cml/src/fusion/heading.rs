@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{Manifold, Pose2, wrap_angle};
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
-use crate::{AppearanceError, HeadingMeasurement};
+use crate::{AppearanceMapError, HeadingMeasurement};
 
 /// A belief that is told which way the robot looks.
 ///
@@ -17,7 +17,7 @@ use crate::{AppearanceError, HeadingMeasurement};
 pub(crate) fn update_heading(
     belief: &Gaussian<Pose2<f64>>,
     facing: &HeadingMeasurement,
-) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
+) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError> {
     let information = cholesky("belief's", belief.covariance())?.inverse();
     let common = facing.map_variance.min(1.0 / information[(2, 2)]);
     let noise = facing.comparison_variance + facing.map_variance - common;

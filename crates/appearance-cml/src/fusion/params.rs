@@ -1,4 +1,4 @@
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// How two Gaussians that mean one place become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -78,7 +78,7 @@ impl FusionParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::positive("gate of the fusion", self.gate)?;
         if let MixtureWeighting::Evidence { missed, appeared } = self.mixture_weighting {
             check::share("weight of a hypothesis that is missed", missed)?;

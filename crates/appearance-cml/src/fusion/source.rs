@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, Vector2};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture, check_covariance};
 
-use crate::{AppearanceError, PoseHypothesis};
+use crate::{AppearanceMapError, PoseHypothesis};
 
 /// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map.
 ///
@@ -14,11 +14,11 @@ pub trait PoseSource {
     /// the rest from it.
     ///
     /// # Errors
-    /// Returns an [`AppearanceError`] if the measurement is invalid; the localizer then keeps its state.
+    /// Returns an [`AppearanceMapError`] if the measurement is invalid; the localizer then keeps its state.
     fn hypotheses(
         &self,
         predicted: Option<&GaussianMixture<Pose2<f64>>>,
-    ) -> Result<Vec<PoseHypothesis>, AppearanceError>;
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError>;
 }
 
 /// A measured position without a heading, such as a GPS fix.
@@ -29,7 +29,7 @@ pub trait PoseSource {
 /// let fix = PositionFix { position: Vector2::new(3.0, 4.0), covariance: Matrix2::identity(), weight: 0.9 };
 /// let said = fix.hypotheses(None)?;
 /// assert_eq!((said[0].gaussian.mean().x(), said[0].independent), (3.0, 1.0));
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionFix {
@@ -49,10 +49,10 @@ impl PoseSource for PositionFix {
     fn hypotheses(
         &self,
         predicted: Option<&GaussianMixture<Pose2<f64>>>,
-    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
         check_covariance("position fix's", &self.covariance)?;
         crate::check::share("weight of a position fix", self.weight)?;
-        let facing = |heading: f64| -> Result<PoseHypothesis, AppearanceError> {
+        let facing = |heading: f64| -> Result<PoseHypothesis, AppearanceMapError> {
             let mean = Pose2::new(self.position.x, self.position.y, heading);
             let to_body = mean.rotation_matrix().transpose();
             let mut covariance = (to_body * self.covariance * to_body.transpose()).to_homogeneous();

@@ -9,7 +9,7 @@ use super::survey::Survey;
 use super::trail::Trail;
 use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
 use crate::{
-    AppearanceError, AppearanceMap, Descriptor, LinearSearch, PoseSource, ReferenceId, ReferenceSearch,
+    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, PoseSource, ReferenceId, ReferenceSearch,
     separation_squared,
 };
 
@@ -41,7 +41,7 @@ use crate::{
 /// assert!(localizer.map().len() > 10);
 /// assert!(localizer.predict(&Pose2::new(f64::NAN, 0.0, 0.0)).is_err());
 /// assert!((localizer.estimate().map_or(0.0, |pose| pose.mean().x()) - 10.0).abs() < 0.1);
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
@@ -74,7 +74,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D> + Default> AppearanceLocalizer
     ///
     /// # Errors
     /// When a parameter or the start has no meaning.
-    pub fn new(params: LocalizerParams, start: Start) -> Result<Self, AppearanceError> {
+    pub fn new(params: LocalizerParams, start: Start) -> Result<Self, AppearanceMapError> {
         Self::with_map(params, AppearanceMap::default(), start)
     }
 }
@@ -88,7 +88,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         params: LocalizerParams,
         map: AppearanceMap<D, S>,
         start: Start,
-    ) -> Result<Self, AppearanceError> {
+    ) -> Result<Self, AppearanceMapError> {
         params.validate()?;
         let belief = Belief::of_start(start)?;
         let was_unimodal = belief.state.is_some();
@@ -138,7 +138,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     ///
     /// # Errors
     /// When the start has no meaning.
-    pub fn restart(&mut self, start: Start) -> Result<(), AppearanceError> {
+    pub fn restart(&mut self, start: Start) -> Result<(), AppearanceMapError> {
         self.belief = Belief::of_start(start)?;
         self.was_unimodal = self.belief.state.is_some();
         self.contest = Contest::default();
@@ -158,7 +158,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     ///
     /// # Errors
     /// When the increment is not finite; the state is as before.
-    pub fn predict(&mut self, increment: &Pose2<f64>) -> Result<(), AppearanceError> {
+    pub fn predict(&mut self, increment: &Pose2<f64>) -> Result<(), AppearanceMapError> {
         let noise = &self.params.odometry;
         let motion = self.motion.then(increment, noise)?;
         let belief = self.belief.moved(increment, noise)?;
@@ -170,9 +170,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The robot sees `view`.
     ///
     /// # Errors
-    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceError::ReferenceIdsExhausted`] when a new reference
+    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceMapError::ReferenceIdsExhausted`] when a new reference
     /// finds no number; the map is as before, and the state is updated.
-    pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceError> {
+    pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceMapError> {
         self.update_with(view, &[])
     }
 
@@ -184,7 +184,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         &mut self,
         view: D,
         sources: &[&dyn PoseSource],
-    ) -> Result<UpdateOutcome, AppearanceError> {
+    ) -> Result<UpdateOutcome, AppearanceMapError> {
         let is_news = self.is_news();
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         let mut contest = None;
@@ -213,7 +213,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     ///
     /// # Errors
     /// When the pose has no meaning or the map is full.
-    pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
+    pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceMapError> {
         let way = self.taught_last.map_or(0.0, |last| (pose.mean().translation - last.translation).norm());
         let id = self.map.teach(view.clone(), pose)?;
         self.taught_last = Some(*pose.mean());
@@ -222,7 +222,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     }
 
     /// What changes with this belief.
-    fn change_to(&mut self, belief: &Belief) -> Result<Vec<Event>, AppearanceError> {
+    fn change_to(&mut self, belief: &Belief) -> Result<Vec<Event>, AppearanceMapError> {
         let is_unimodal = belief.one_place(&self.params.unimodal).is_some();
         let mut events = Vec::new();
         match (self.was_unimodal, is_unimodal) {

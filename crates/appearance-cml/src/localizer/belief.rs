@@ -3,7 +3,7 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::Start;
 use super::anywhere::Anywhere;
-use crate::{AppearanceError, OdometryNoise, UnimodalParams, propagate, unimodal};
+use crate::{AppearanceMapError, OdometryNoise, UnimodalParams, propagate, unimodal};
 
 /// Where a belief looks for what the robot sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Belief {
         Self { state: None, anywhere: Anywhere::everything(), outlook }
     }
 
-    pub(super) fn of_start(start: Start) -> Result<Self, AppearanceError> {
+    pub(super) fn of_start(start: Start) -> Result<Self, AppearanceMapError> {
         let state = start.into_state()?;
         Ok(match state {
             Some(_) => Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Map },
@@ -67,12 +67,12 @@ impl Belief {
         &self,
         increment: &Pose2<f64>,
         noise: &OdometryNoise,
-    ) -> Result<Self, AppearanceError> {
+    ) -> Result<Self, AppearanceMapError> {
         let Some(state) = &self.state else { return Ok(self.clone()) };
         let moved = state.log_weights().iter().zip(state.components()).map(|(log_weight, component)| {
             propagate(component, increment, noise).map(|moved| (*log_weight, moved))
         });
-        let moved: Result<Vec<_>, AppearanceError> = moved.collect();
+        let moved: Result<Vec<_>, AppearanceMapError> = moved.collect();
         Ok(Self { state: Some(GaussianMixture::from_log_weights(moved?)?), ..*self })
     }
 }

@@ -4,7 +4,7 @@ use wayfix_gaussian_core::Gaussian;
 use super::fit::{GATE_SIGMAS, HERE_TURN};
 use super::{AppearanceLocalizer, Observation};
 use crate::{
-    AppearanceError, Descriptor, HeadingMeasurement, PoseHypothesis, ReferenceSearch, update_heading,
+    AppearanceMapError, Descriptor, HeadingMeasurement, PoseHypothesis, ReferenceSearch, update_heading,
 };
 
 /// Weight from which on a hypothesis is worth the comparisons.
@@ -24,7 +24,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         view: &D,
         predicted: &mut [PoseHypothesis],
         observed: &[PoseHypothesis],
-    ) -> Result<(), AppearanceError> {
+    ) -> Result<(), AppearanceMapError> {
         if self.params.observation != Observation::Interpolation {
             return Ok(());
         }
@@ -44,7 +44,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         &self,
         view: &D,
         belief: &Gaussian<Pose2<f64>>,
-    ) -> Result<Option<HeadingMeasurement>, AppearanceError> {
+    ) -> Result<Option<HeadingMeasurement>, AppearanceMapError> {
         let Some(limit) = self.map.least_distance_to_far(view, belief.mean(), self.views) else {
             return Ok(None);
         };

@@ -3,7 +3,7 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::compass::MOST_LEARNED_SIGMA;
 use super::{AppearanceLocalizer, Event};
-use crate::{AppearanceError, Descriptor, ReferenceSearch};
+use crate::{AppearanceMapError, Descriptor, ReferenceSearch};
 
 /// Views that are learned with one view at most: what has waited is made up for without a step that takes many times as long as others.
 const MOST_AT_ONCE: usize = 8;
@@ -16,7 +16,7 @@ const SURVEYED_REACHES: f64 = 1.5;
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The view joins the way, and those that have waited long enough are learned.
-    pub(super) fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
+    pub(super) fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceMapError> {
         let estimate = self.belief.one_place(&self.params.unimodal).cloned();
         let way = self.motion.increment.translation.norm();
         self.trail.moved(way, self.map.match_radius(&self.params.map));
@@ -70,7 +70,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         &mut self,
         settled: Option<Gaussian<Pose2<f64>>>,
         events: &mut Vec<Event>,
-    ) -> Result<(), AppearanceError> {
+    ) -> Result<(), AppearanceMapError> {
         let is_corroborated = self.is_corroborated();
         let Some(view) = self.journey.take_oldest() else { return Ok(()) };
         if let Some(pose) = settled.filter(|_| is_corroborated) {

@@ -4,8 +4,8 @@ use wayfix_gaussian_core::Gaussian;
 use super::belief::{Belief, Outlook};
 use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::{
-    AppearanceError, AppearanceMapParams, Descriptor, FusionParams, PlaceMatch, PoseHypothesis, PoseSource,
-    ReferenceSearch, fuse, interpolate, separation_squared, simplify, superpose,
+    AppearanceMapError, AppearanceMapParams, Descriptor, FusionParams, PlaceMatch, PoseHypothesis,
+    PoseSource, ReferenceSearch, fuse, interpolate, separation_squared, simplify, superpose,
 };
 
 /// Similarity of a view to a reference of the place where the robot is thought to be, from which on nothing else is looked for.
@@ -28,7 +28,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         belief: &Belief,
         view: Option<&D>,
         sources: &[&dyn PoseSource],
-    ) -> Result<(Belief, usize), AppearanceError> {
+    ) -> Result<(Belief, usize), AppearanceMapError> {
         let (mut observed, n_sightings) = match view {
             Some(view) => self.observe(belief, view)?,
             None => (Vec::new(), 0),
@@ -60,7 +60,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     }
 
     /// $`p(x_t | y_t)`$, and of how many places it is made.
-    fn observe(&self, belief: &Belief, view: &D) -> Result<(Vec<PoseHypothesis>, usize), AppearanceError> {
+    fn observe(&self, belief: &Belief, view: &D) -> Result<(Vec<PoseHypothesis>, usize), AppearanceMapError> {
         let params = &self.params;
         match params.observation {
             Observation::Superposition => {
@@ -86,7 +86,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         &self,
         observed: Vec<PoseHypothesis>,
         predicted: &[PoseHypothesis],
-    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
         let agrees = |seen: &PoseHypothesis| self.agrees(&seen.gaussian, predicted);
         let agreeing = observed.into_iter().map(|seen| Ok(agrees(&seen)?.then_some(seen)));
         agreeing.filter_map(Result::transpose).collect()
@@ -97,7 +97,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         &self,
         belief: &Gaussian<Pose2<f64>>,
         observed: &[PoseHypothesis],
-    ) -> Result<bool, AppearanceError> {
+    ) -> Result<bool, AppearanceMapError> {
         for hypothesis in observed {
             if separation_squared(belief, &hypothesis.gaussian)? < self.params.fusion.gate {
                 return Ok(true);

@@ -1,6 +1,6 @@
 use super::RelocationParams;
 use crate::{
-    AppearanceError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise,
+    AppearanceMapError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise,
     UnimodalParams, check,
 };
 
@@ -112,7 +112,7 @@ impl LocalizerParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         self.odometry.validate()?;
         check::count("matches", self.most_matches)?;
         self.fusion.validate()?;

@@ -1,4 +1,4 @@
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// When a robot doubts where it is, and how it finds itself again.
 ///
@@ -90,7 +90,7 @@ impl RelocationParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::positive("views to doubt after", self.views)?;
         check::share("share of views from which on the robot doubts", self.doubt)?;
         check::positive("way for which a break counts (m)", self.break_way)?;

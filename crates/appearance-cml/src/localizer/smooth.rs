@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::state::transition;
-use crate::{AppearanceError, OdometryNoise};
+use crate::{AppearanceMapError, OdometryNoise};
 
 /// Odometry between two views: the way, and the covariance of its error in the body frame at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,14 +24,14 @@ impl Motion {
     ///
     /// # Errors
     /// When the increment, or where it leads, is not finite.
-    pub fn then(&self, increment: &Pose2<f64>, noise: &OdometryNoise) -> Result<Self, AppearanceError> {
+    pub fn then(&self, increment: &Pose2<f64>, noise: &OdometryNoise) -> Result<Self, AppearanceMapError> {
         let transition = transition(increment);
         let mut covariance =
             transition * self.covariance * transition.transpose() + noise.covariance(increment);
         symmetrize(&mut covariance);
         let motion = Self { increment: self.increment.compose(increment), covariance };
         let finite = motion.increment.is_finite() && covariance.iter().all(|entry| entry.is_finite());
-        if finite { Ok(motion) } else { Err(AppearanceError::NotFinite { what: "odometry increment" }) }
+        if finite { Ok(motion) } else { Err(AppearanceMapError::NotFinite { what: "odometry increment" }) }
     }
 
     /// A belief about the end of the motion taken back to its beginning.
@@ -70,7 +70,7 @@ impl Motion {
 /// let seen = Gaussian::from_sigmas(Pose2::new(2.2, 0.0, 0.0), &sigmas)?; // odometry says 2.0
 /// let smoothed = smooth(&[start, half, seen], &[step, step])?;
 /// assert!((smoothed[1].mean().x() - 1.1).abs() < 1e-3); // half of the correction half way
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
@@ -78,10 +78,10 @@ impl Motion {
 pub fn smooth(
     filtered: &[Gaussian<Pose2<f64>>],
     motions: &[Motion],
-) -> Result<Vec<Gaussian<Pose2<f64>>>, AppearanceError> {
+) -> Result<Vec<Gaussian<Pose2<f64>>>, AppearanceMapError> {
     let Some((last, earlier)) = filtered.split_last() else { return Ok(Vec::new()) };
     if motions.len() != earlier.len() {
-        return Err(AppearanceError::Parameter {
+        return Err(AppearanceMapError::Parameter {
             what: "number of motions",
             value: motions.len() as f64,
             range: "one less than of beliefs",
@@ -102,7 +102,7 @@ fn step_back(
     belief: &Gaussian<Pose2<f64>>,
     motion: &Motion,
     next: &Gaussian<Pose2<f64>>,
-) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
+) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError> {
     let predicted = motion.applied(belief);
     let forward = transition(&motion.increment) * belief.covariance();
     let gain = cholesky("predicted", predicted.covariance())?.solve(&forward).transpose();

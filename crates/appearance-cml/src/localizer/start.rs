@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Where the robot is when it is switched on.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub enum Start {
 }
 
 impl Start {
-    pub(super) fn into_state(self) -> Result<Option<GaussianMixture<Pose2<f64>>>, AppearanceError> {
+    pub(super) fn into_state(self) -> Result<Option<GaussianMixture<Pose2<f64>>>, AppearanceMapError> {
         match self {
             Self::Anywhere => Ok(None),
             Self::Among(places) => {

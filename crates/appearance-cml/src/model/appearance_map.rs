@@ -6,7 +6,7 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
 use super::{AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDistanceScale, similarity};
-use crate::{AppearanceError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
+use crate::{AppearanceMapError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
 
 /// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
 ///
@@ -30,7 +30,7 @@ use crate::{AppearanceError, Descriptor, LinearSearch, ReferenceId, ReferenceMat
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.05))?;
 /// let id = map.teach(Brightness(0.7), &pose)?;
 /// assert_eq!(map.reference(id).map(|r| r.places[0].gaussian.mean().x()), Some(1.0));
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct AppearanceMap<D, S = LinearSearch<D>> {
@@ -59,24 +59,24 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// A map from its parts; `next` is the number of the next reference.
     ///
     /// # Errors
-    /// Returns an error if a place is invalid ([`ReferenceView::validate`]), and [`AppearanceError::NoSuchReference`] if a reference has no view,
-    /// no place, or a number that is not below `next`; [`AppearanceError::Parameter`] if there are more views than references.
+    /// Returns an error if a place is invalid ([`ReferenceView::validate`]), and [`AppearanceMapError::NoSuchReference`] if a reference has no view,
+    /// no place, or a number that is not below `next`; [`AppearanceMapError::Parameter`] if there are more views than references.
     pub fn from_parts(
         search: S,
         references: BTreeMap<ReferenceId, ReferenceView>,
         scale: ViewDistanceScale,
         next: u32,
-    ) -> Result<Self, AppearanceError> {
+    ) -> Result<Self, AppearanceMapError> {
         let mut grid = Grid::default();
         for (id, reference) in &references {
             reference.validate()?;
             if search.get(*id).is_none() || id.0 >= next || reference.places.is_empty() {
-                return Err(AppearanceError::NoSuchReference { id: id.0 });
+                return Err(AppearanceMapError::NoSuchReference { id: id.0 });
             }
             enter(&mut grid, *id, reference);
         }
         if search.len() != references.len() {
-            return Err(AppearanceError::Parameter {
+            return Err(AppearanceMapError::Parameter {
                 what: "number of views",
                 value: search.len() as f64,
                 range: "that of the references",
@@ -131,8 +131,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
     ///
     /// # Errors
-    /// Returns [`AppearanceError::Gaussian`] if the pose is invalid, and [`AppearanceError::ReferenceIdsExhausted`] if no number is left.
-    pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
+    /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left.
+    pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceMapError> {
         let gaussian = Gaussian::new(*pose.mean(), *pose.covariance())?;
         self.insert(
             view,
@@ -209,9 +209,9 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         &mut self,
         view: D,
         reference: ReferenceView,
-    ) -> Result<ReferenceId, AppearanceError> {
+    ) -> Result<ReferenceId, AppearanceMapError> {
         let id = ReferenceId(self.next);
-        let next = self.next.checked_add(1).ok_or(AppearanceError::ReferenceIdsExhausted)?;
+        let next = self.next.checked_add(1).ok_or(AppearanceMapError::ReferenceIdsExhausted)?;
         self.search.insert(id, view)?;
         self.next = next;
         enter(&mut self.grid, id, &reference);

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Angle, Pose2, wrap_angle};
 use wayfix_gaussian_core::{CircularMoments, Gaussian, symmetrize};
 
 use super::{PlaceMatch, ViewDistanceScale};
-use crate::{AppearanceError, PoseHypothesis};
+use crate::{AppearanceMapError, PoseHypothesis};
 
 /// The observation as one hypothesis for each group of neighbouring places, between which the pose is interpolated.
 ///
@@ -22,7 +22,7 @@ pub fn interpolate(
     place_matches: &[PlaceMatch],
     belief: &[Gaussian<Pose2<f64>>],
     scale: &ViewDistanceScale,
-) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
     groups(place_matches, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
 }
 
@@ -73,7 +73,7 @@ fn pose_of(
     whole: &Group<'_>,
     belief: &[Gaussian<Pose2<f64>>],
     scale: &ViewDistanceScale,
-) -> Result<PoseHypothesis, AppearanceError> {
+) -> Result<PoseHypothesis, AppearanceMapError> {
     let group = nearest_of(whole);
     let nearest = group[0].matched.comparison.distance;
     let shares = shares(group, KERNEL_WIDTH * scale.step_distance());
@@ -114,7 +114,7 @@ pub(super) fn turn_of(
     group: &[&PlaceMatch],
     shares: &[f64],
     scale: &ViewDistanceScale,
-) -> Result<(f64, f64), AppearanceError> {
+) -> Result<(f64, f64), AppearanceMapError> {
     let headings: Vec<Angle<f64>> = group.iter().map(|s| s.gaussian.mean().rotation).collect();
     let moments = CircularMoments::from_weighted(&headings, shares)?;
     // Headings of a group lie within a fraction of a turn, so that they never cancel.

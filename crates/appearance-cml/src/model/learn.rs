@@ -12,7 +12,8 @@ use super::{
     ReferenceView, interpolate,
 };
 use crate::{
-    AppearanceError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared, similarity,
+    AppearanceMapError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared,
+    similarity,
 };
 
 /// How far around the robot references are forgotten that it does not see, in parts of the distance at which views still match.
@@ -36,14 +37,14 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// adaptation of the weights, by which references are kept or forgotten.
     ///
     /// # Errors
-    /// Returns [`AppearanceError::Gaussian`] if the pose is invalid, and [`AppearanceError::ReferenceIdsExhausted`] if no number is left;
+    /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left;
     /// the map is then unchanged.
     pub fn learn(
         &mut self,
         view: D,
         pose: &Gaussian<Pose2<f64>>,
         params: &AppearanceMapParams,
-    ) -> Result<MapUpdate, AppearanceError> {
+    ) -> Result<MapUpdate, AppearanceMapError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
         let radius = self.search_radius(pose, limit).max(params.active_forgetting.radius.unwrap_or(0.0));
@@ -86,7 +87,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         pose: &Gaussian<Pose2<f64>>,
         novel: bool,
         (limit, params): (f64, &AppearanceMapParams),
-    ) -> Result<BTreeMap<ReferenceId, ReferenceView>, AppearanceError> {
+    ) -> Result<BTreeMap<ReferenceId, ReferenceView>, AppearanceMapError> {
         // A new reference is as similar to its view as can be, and takes its share of the counts.
         let own = if novel { 1.0 } else { 0.0 };
         let total: f64 = own + seen.iter().map(|m| similarity(m.comparison.distance, limit)).sum::<f64>();
@@ -123,7 +124,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &AppearanceMapParams),
-    ) -> Result<Option<Residual>, AppearanceError> {
+    ) -> Result<Option<Residual>, AppearanceMapError> {
         let place_matches: Vec<PlaceMatch> = seen
             .iter()
             .flat_map(|m| {
@@ -159,7 +160,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &AppearanceMapParams),
-    ) -> Result<(), AppearanceError> {
+    ) -> Result<(), AppearanceMapError> {
         for matched in seen {
             let Some(reference) = changed.get_mut(&matched.id) else { continue };
             for place in &mut reference.places {

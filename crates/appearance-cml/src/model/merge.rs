@@ -1,13 +1,13 @@
 use wayfix_gaussian_core::{GaussianError, moment_matched};
 
 use super::{AppearanceMapParams, PlaceComponent};
-use crate::{AppearanceError, separation_squared};
+use crate::{AppearanceMapError, separation_squared};
 
 /// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
 pub(super) fn merge_places(
     places: &mut Vec<PlaceComponent>,
     params: &AppearanceMapParams,
-) -> Result<(), AppearanceError> {
+) -> Result<(), AppearanceMapError> {
     let Some(newest) = places.pop() else { return Ok(()) };
     let mut nearest = None;
     let mut least = params.merge_distance;
@@ -29,7 +29,7 @@ pub(super) fn merged(
     a: &PlaceComponent,
     b: &PlaceComponent,
     params: &AppearanceMapParams,
-) -> Result<PlaceComponent, AppearanceError> {
+) -> Result<PlaceComponent, AppearanceMapError> {
     let gaussian = moment_matched(&[a.count, b.count], &[a.gaussian.clone(), b.gaussian.clone()])
         .map_err(GaussianError::from)?;
     Ok(PlaceComponent {

@@ -1,4 +1,4 @@
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// Whether and how the map forgets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -145,7 +145,7 @@ impl AppearanceMapParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::positive("match limit", self.match_limit.unwrap_or(1.0))?;
         check::share("share of the match limit", self.match_limit_fraction)?;
         check::positive("insertion distance", self.insertion_distance_factor)?;

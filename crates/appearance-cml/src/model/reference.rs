@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, check_covariance};
 
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// One place where a reference view was seen. [Gross et al. 2005, Eq. 10]
 #[derive(Clone, Debug, PartialEq)]
@@ -31,12 +31,12 @@ impl ReferenceView {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         for place in &self.places {
             check::share("weight of a place", place.weight)?;
             check::positive("count of a place", place.count)?;
             if !place.gaussian.mean().is_finite() {
-                return Err(AppearanceError::NotFinite { what: "place of a reference" });
+                return Err(AppearanceMapError::NotFinite { what: "place of a reference" });
             }
             check_covariance("place's", place.gaussian.covariance())?;
         }

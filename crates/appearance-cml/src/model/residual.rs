@@ -5,7 +5,7 @@ use wayfix_gaussian_core::Gaussian;
 use super::comparing::place_match::turned;
 use super::merge::merged;
 use super::{AppearanceMapParams, PlaceComponent};
-use crate::{AppearanceError, ReferenceMatch};
+use crate::{AppearanceMapError, ReferenceMatch};
 
 /// Where the robot is less where the references put it, in the frame of the map.
 pub(super) struct Residual {
@@ -21,7 +21,7 @@ impl Residual {
         matched: &ReferenceMatch,
         count: f64,
         (pose, params): (&Gaussian<Pose2<f64>>, &AppearanceMapParams),
-    ) -> Result<(), AppearanceError> {
+    ) -> Result<(), AppearanceMapError> {
         let old = place.gaussian.mean();
         let seen_from = turned(pose, -matched.comparison.rotation);
         let corrected =

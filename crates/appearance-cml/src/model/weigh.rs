@@ -7,7 +7,7 @@ use super::{
     AppearanceMapParams, ForgettingParams, ForgettingUncertainty, PlaceComponent, PlaceUpdateRule,
     ViewDistanceScale,
 };
-use crate::{AppearanceError, ReferenceMatch, separation_squared, similarity};
+use crate::{AppearanceMapError, ReferenceMatch, separation_squared, similarity};
 
 /// The weight of a place whose reference looks like the view: it grows when the robot is there and fades when the robot is elsewhere.
 ///
@@ -17,7 +17,7 @@ pub(super) fn weight_when_seen(
     matched: &ReferenceMatch,
     pose: &Gaussian<Pose2<f64>>,
     (limit, scale, params): (f64, &ViewDistanceScale, &AppearanceMapParams),
-) -> Result<f64, AppearanceError> {
+) -> Result<f64, AppearanceMapError> {
     let gain = params.learning_rate * similarity(matched.comparison.distance, limit);
     let seen_from = turned(&place.gaussian, matched.comparison.rotation);
     let expected = match params.place_update {

@@ -7,7 +7,7 @@ use super::{
     projection::{Projection, Sketch},
     slot_set::SlotSet,
 };
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Finds what [`LinearSearch`](super::LinearSearch) finds, to the bit, in a fraction of the comparisons.
 ///
@@ -28,7 +28,7 @@ use crate::AppearanceError;
 ///     index.insert(ReferenceId(height as u32), view(height)?)?;
 /// }
 /// assert_eq!(index.nearest(&view(42)?, 1)[0].id, ReferenceId(42));
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct AppearanceIndex<D: LowerBoundedDistance> {
@@ -185,12 +185,12 @@ impl<D: LowerBoundedDistance> AppearanceIndex<D> {
 }
 
 impl<D: LowerBoundedDistance> ReferenceSearch<D> for AppearanceIndex<D> {
-    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
+    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceMapError> {
         if self.slot_of.contains_key(&id) {
-            return Err(AppearanceError::DuplicateReference { id: id.0 });
+            return Err(AppearanceMapError::DuplicateReference { id: id.0 });
         }
         if self.references().next().is_some_and(|(_, any)| !descriptor.is_comparable(any)) {
-            return Err(AppearanceError::Incomparable { id: id.0 });
+            return Err(AppearanceMapError::Incomparable { id: id.0 });
         }
         let sketch = self.projection.sketch(&descriptor.invariants());
         let slot = self.free.pop().unwrap_or(self.slots.len() as u32);

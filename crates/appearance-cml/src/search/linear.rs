@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::{Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, nearest::by_distance};
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Compares with every reference: the plain search that faster ones must agree with.
 #[derive(Clone, Debug)]
@@ -29,9 +29,9 @@ impl<D: Descriptor> LinearSearch<D> {
 }
 
 impl<D: Descriptor> ReferenceSearch<D> for LinearSearch<D> {
-    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
+    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceMapError> {
         if self.references.contains_key(&id) {
-            return Err(AppearanceError::DuplicateReference { id: id.0 });
+            return Err(AppearanceMapError::DuplicateReference { id: id.0 });
         }
         self.references.insert(id, descriptor);
         Ok(())

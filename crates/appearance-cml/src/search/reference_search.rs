@@ -1,5 +1,5 @@
 use super::{Descriptor, ViewDifference};
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Names a reference view for as long as the map lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -21,9 +21,9 @@ pub trait ReferenceSearch<D: Descriptor> {
     /// Takes a reference in.
     ///
     /// # Errors
-    /// [`AppearanceError::DuplicateReference`] when there is one of that number; an index may refuse a descriptor that cannot be compared
-    /// with the others, [`AppearanceError::Incomparable`].
-    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError>;
+    /// [`AppearanceMapError::DuplicateReference`] when there is one of that number; an index may refuse a descriptor that cannot be compared
+    /// with the others, [`AppearanceMapError::Incomparable`].
+    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceMapError>;
 
     /// Takes a reference out, if there is one of that number.
     fn remove(&mut self, id: ReferenceId) -> Option<D>;

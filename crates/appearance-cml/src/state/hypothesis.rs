@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// One Gaussian of a mixture over poses whose weights need not add up to one.
 ///
@@ -34,7 +34,7 @@ impl PoseHypothesis {
     ///
     /// # Errors
     /// When there are no hypotheses, a weight is negative or not finite, or all are zero.
-    pub fn into_mixture(hypotheses: Vec<Self>) -> Result<GaussianMixture<Pose2<f64>>, AppearanceError> {
+    pub fn into_mixture(hypotheses: Vec<Self>) -> Result<GaussianMixture<Pose2<f64>>, AppearanceMapError> {
         Ok(GaussianMixture::from_weights(hypotheses.into_iter().map(|h| (h.weight, h.gaussian)).collect())?)
     }
 }

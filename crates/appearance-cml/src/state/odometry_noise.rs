@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Pose2;
 
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// How odometry errs: variances that grow with the way and with the turn, so that cutting a motion in pieces changes nothing.
 ///
@@ -50,7 +50,7 @@ impl OdometryNoise {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::not_negative("forward noise of the odometry (m)", self.forward_sigma_per_meter)?;
         check::not_negative("sideways noise of the odometry (m)", self.sideways_sigma_per_meter)?;
         check::not_negative("heading noise of the odometry a metre (rad)", self.heading_sigma_per_meter)?;

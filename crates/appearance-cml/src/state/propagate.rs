@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::{Gaussian, symmetrize};
 
 use super::OdometryNoise;
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// A belief after the robot has moved by `increment`, given in the body frame at its beginning. [Gross et al. 2005, Eq. 1]
 ///
@@ -18,23 +18,23 @@ use crate::AppearanceError;
 /// let moved = propagate(&start, &Pose2::new(2.0, 0.0, 0.0), &OdometryNoise::default())?;
 /// assert_eq!(moved.mean().x(), 2.0);
 /// assert!(moved.sigmas().y > 0.2); // a heading off by 0.1 rad is 0.2 m off to the side two metres on
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
-/// [`AppearanceError::NotFinite`] when the increment is not finite, or the way to its end overflows.
+/// [`AppearanceMapError::NotFinite`] when the increment is not finite, or the way to its end overflows.
 pub fn propagate(
     belief: &Gaussian<Pose2<f64>>,
     increment: &Pose2<f64>,
     noise: &OdometryNoise,
-) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
+) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError> {
     let mean = belief.mean().compose(increment);
     let transition = transition(increment);
     let mut covariance =
         transition * belief.covariance() * transition.transpose() + noise.covariance(increment);
     symmetrize(&mut covariance);
     if !(mean.is_finite() && covariance.iter().all(|entry| entry.is_finite())) {
-        return Err(AppearanceError::NotFinite { what: "odometry increment" });
+        return Err(AppearanceMapError::NotFinite { what: "odometry increment" });
     }
     Ok(Gaussian::from_parts_unchecked(mean, covariance))
 }

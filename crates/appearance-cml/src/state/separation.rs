@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::{Gaussian, cholesky};
 
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// The squared Mahalanobis distance of two beliefs, each with its own covariance.
 ///
@@ -15,7 +15,7 @@ use crate::AppearanceError;
 /// let at = |x: f64, heading: f64| Gaussian::from_sigmas(Pose2::new(x, 0.0, heading), &Vector3::new(0.3, 0.3, 0.1));
 /// let across_the_wrap = separation_squared(&at(0.0, 3.1)?, &at(0.6, -3.1)?)?;
 /// assert!(across_the_wrap < 2.5); // 0.36 / 0.18 and a turn of 0.08 rad, not of 6.2
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
@@ -23,10 +23,10 @@ use crate::AppearanceError;
 pub fn separation_squared(
     a: &Gaussian<Pose2<f64>>,
     b: &Gaussian<Pose2<f64>>,
-) -> Result<f64, AppearanceError> {
+) -> Result<f64, AppearanceMapError> {
     let seen = b.in_chart_at(a.mean())?;
     let factor = cholesky("sum of the beliefs'", &(a.covariance() + seen.covariance()))?;
     let deviation = a.mean().local(b.mean());
     let squared = deviation.dot(&factor.solve(&deviation));
-    if squared.is_finite() { Ok(squared) } else { Err(AppearanceError::NotFinite { what: "belief" }) }
+    if squared.is_finite() { Ok(squared) } else { Err(AppearanceMapError::NotFinite { what: "belief" }) }
 }

@@ -1,7 +1,7 @@
 use wayfix_gaussian_core::{GaussianError, moment_matched};
 
 use super::{PoseHypothesis, separation_squared};
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// How a mixture over poses is kept small.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ impl MixtureReductionParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::not_negative("squared distance of components to merge", self.merge_distance)?;
         check::share("least weight of a component", self.min_weight)?;
         check::count("components to keep", self.max_components)
@@ -47,13 +47,13 @@ impl MixtureReductionParams {
 /// use wayfix_appearance_cml::{PoseHypothesis, MixtureReductionParams, simplify};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
-/// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceError> {
+/// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceMapError> {
 ///     let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 ///     Ok(PoseHypothesis::new(weight, gaussian))
 /// };
 /// let few = simplify(vec![at(0.0, 1.0)?, at(5.0, 1.5)?, at(0.1, 1.0)?, at(9.0, 1e-8)?], &MixtureReductionParams::default())?;
 /// assert_eq!(few.iter().map(|h| h.weight).collect::<Vec<_>>(), [2.0, 1.5]);
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 ///
 /// # Errors
@@ -61,7 +61,7 @@ impl MixtureReductionParams {
 pub fn simplify(
     mut hypotheses: Vec<PoseHypothesis>,
     params: &MixtureReductionParams,
-) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
     let total = total_weight(&hypotheses)?;
     hypotheses.retain(|h| h.weight >= params.min_weight * total && h.weight > 0.0);
     hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
@@ -80,7 +80,7 @@ pub fn simplify(
     Ok(kept)
 }
 
-fn total_weight(hypotheses: &[PoseHypothesis]) -> Result<f64, AppearanceError> {
+fn total_weight(hypotheses: &[PoseHypothesis]) -> Result<f64, AppearanceMapError> {
     if let Some(index) = hypotheses.iter().position(|h| !(h.weight >= 0.0 && h.weight.is_finite())) {
         return Err(GaussianError::Weight { index, value: hypotheses[index].weight }.into());
     }
@@ -92,7 +92,7 @@ fn nearest_within(
     kept: &[PoseHypothesis],
     hypothesis: &PoseHypothesis,
     reach: f64,
-) -> Result<Option<usize>, AppearanceError> {
+) -> Result<Option<usize>, AppearanceMapError> {
     let mut nearest = None;
     let mut least = reach;
     for (index, other) in kept.iter().enumerate() {
@@ -104,7 +104,7 @@ fn nearest_within(
     Ok(nearest)
 }
 
-fn merge(a: &PoseHypothesis, b: &PoseHypothesis) -> Result<PoseHypothesis, AppearanceError> {
+fn merge(a: &PoseHypothesis, b: &PoseHypothesis) -> Result<PoseHypothesis, AppearanceMapError> {
     let gaussian = moment_matched(&[a.weight, b.weight], &[a.gaussian.clone(), b.gaussian.clone()])
         .map_err(GaussianError::from)?;
     Ok(PoseHypothesis {

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// When a mixture counts as one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl UnimodalParams {
     ///
     /// # Errors
     /// Names the first that has none.
-    pub fn validate(&self) -> Result<(), AppearanceError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::share("least weight of the one component", self.min_weight)?;
         check::positive("greatest σ of the one component (m)", self.max_sigma.min(f64::MAX))
     }
@@ -47,7 +47,7 @@ impl UnimodalParams {
 /// assert_eq!(unimodal(&sure, &UnimodalParams::default()).map(|g| g.mean().x()), Some(4.0));
 /// let torn = GaussianMixture::from_weights(vec![(0.4, at(0.0)?), (0.6, at(4.0)?)])?;
 /// assert!(unimodal(&torn, &UnimodalParams::default()).is_none());
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 pub fn unimodal<'a>(
     mixture: &'a GaussianMixture<Pose2<f64>>,

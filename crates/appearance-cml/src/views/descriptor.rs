@@ -1,6 +1,6 @@
 use super::lanes::HARMONICS;
 use super::probe::{N_LOW_HARMONICS, compare_once};
-use crate::{AppearanceError, Descriptor, ViewDifference};
+use crate::{AppearanceMapError, Descriptor, ViewDifference};
 
 /// Harmonics beside the constant one, in groups.
 pub(super) const MOST_GROUPS: usize = 8;
@@ -32,10 +32,10 @@ impl PanoramaDescriptor {
     /// From what [`scale`](Self::scale), [`n_rings`](Self::n_rings) and [`coefficients`](Self::coefficients) give.
     ///
     /// # Errors
-    /// [`AppearanceError::Descriptor`] when the scale is not finite and positive, a coefficient is −128, or their number is not an odd multiple of the
+    /// [`AppearanceMapError::Descriptor`] when the scale is not finite and positive, a coefficient is −128, or their number is not an odd multiple of the
     /// rings of at most 64 harmonics.
-    pub fn from_parts(scale: f32, n_rings: u8, coefficients: Vec<i8>) -> Result<Self, AppearanceError> {
-        let refused = AppearanceError::Descriptor { scale, n_rings, n_coefficients: coefficients.len() };
+    pub fn from_parts(scale: f32, n_rings: u8, coefficients: Vec<i8>) -> Result<Self, AppearanceMapError> {
+        let refused = AppearanceMapError::Descriptor { scale, n_rings, n_coefficients: coefficients.len() };
         let n_parts = coefficients.len().checked_div(usize::from(n_rings)).unwrap_or(0);
         let fits = n_parts * usize::from(n_rings) == coefficients.len();
         let is_spectrum = fits && n_parts % 2 == 1 && n_parts < 2 * MOST_HARMONICS;

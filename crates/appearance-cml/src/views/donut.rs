@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::{AzimuthDirection, Panorama};
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Which ring of a raw omnidirectional image shows what is highest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +26,7 @@ pub enum RingOrientation {
 /// let panorama = donut.unwrap_image(10, 10, image.pixels(), 16, 3)?;
 /// assert_eq!((panorama.n_columns(), panorama.n_rows()), (16, 3));
 /// assert!(panorama.pixels().iter().all(|pixel| *pixel == [7; 3]));
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -47,7 +47,7 @@ impl OmnidirectionalRing {
     /// whose middles lie in it, whatever its size. A cell without any, which is smaller than a pixel, is the pixel at its middle.
     ///
     /// # Errors
-    /// [`AppearanceError::PixelCount`] when the pixels are not `width · height` or the panorama has none, [`AppearanceError::Donut`] when radii
+    /// [`AppearanceMapError::PixelCount`] when the pixels are not `width · height` or the panorama has none, [`AppearanceMapError::Donut`] when radii
     /// or centre are not finite, not 0 ≤ inner < outer, or the ring does not lie inside the image.
     pub fn unwrap_image(
         &self,
@@ -56,15 +56,15 @@ impl OmnidirectionalRing {
         pixels: &[[u8; 3]],
         n_columns: usize,
         n_rows: usize,
-    ) -> Result<Panorama, AppearanceError> {
+    ) -> Result<Panorama, AppearanceMapError> {
         if width.checked_mul(height) != Some(pixels.len()) || pixels.is_empty() {
-            return Err(AppearanceError::PixelCount {
+            return Err(AppearanceMapError::PixelCount {
                 size: (width, height),
                 n_bytes: pixels.len().saturating_mul(3),
             });
         }
         if n_columns == 0 || n_rows == 0 {
-            return Err(AppearanceError::PixelCount { size: (n_columns, n_rows), n_bytes: 0 });
+            return Err(AppearanceMapError::PixelCount { size: (n_columns, n_rows), n_bytes: 0 });
         }
         self.check(width, height)?;
         let mut sums = vec![Sum::default(); n_columns * n_rows];
@@ -80,7 +80,7 @@ impl OmnidirectionalRing {
         Ok(Panorama::from_pixels(n_columns, sums.iter().enumerate().map(mean).collect()))
     }
 
-    fn check(&self, width: usize, height: usize) -> Result<(), AppearanceError> {
+    fn check(&self, width: usize, height: usize) -> Result<(), AppearanceMapError> {
         let [inner, outer] = self.radii;
         let inside =
             |center: f64, extent: usize| center - outer >= -0.5 && center + outer <= extent as f64 - 0.5;
@@ -88,7 +88,7 @@ impl OmnidirectionalRing {
         if is_ring && inside(self.center[0], width) && inside(self.center[1], height) {
             return Ok(());
         }
-        Err(AppearanceError::Donut { center: self.center, radii: self.radii, image: (width, height) })
+        Err(AppearanceMapError::Donut { center: self.center, radii: self.radii, image: (width, height) })
     }
 
     /// The cell of the panorama that a pixel lies in, if it lies in the ring.
@@ -254,7 +254,7 @@ mod tests {
             OmnidirectionalRing { center: [f64::NAN, 50.0], ..good },
         ] {
             let refused = bad.unwrap_image(SIZE, SIZE, &image(), 8, 2);
-            assert!(matches!(refused, Err(AppearanceError::Donut { .. })), "{bad:?}");
+            assert!(matches!(refused, Err(AppearanceMapError::Donut { .. })), "{bad:?}");
         }
         assert!(good.unwrap_image(SIZE, SIZE, &image()[1..], 8, 2).is_err());
         assert!(good.unwrap_image(0, 0, &[], 8, 2).is_err());

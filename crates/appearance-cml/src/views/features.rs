@@ -1,7 +1,7 @@
 use super::{
     AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaParams, cosines::Cosines, sectors::cell_means,
 };
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// Turns the panoramas of one camera into descriptors.
 ///
@@ -19,7 +19,7 @@ use crate::{AppearanceError, check};
 /// let seen = after.compare(&before);
 /// // Ten columns of 3° to the right is a turn by −30°.
 /// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() + 30.0).abs() < 0.2);
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct PanoramaFeatures {
@@ -37,8 +37,8 @@ impl PanoramaFeatures {
     /// For panoramas of `n_columns` × `n_rows` pixels.
     ///
     /// # Errors
-    /// [`AppearanceError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
-    pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceError> {
+    /// [`AppearanceMapError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
+    pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceMapError> {
         params.validate()?;
         check::count("rows of the panorama", n_rows)?;
         let (n_rings, n_sectors) = (params.n_rings.min(n_rows), params.n_sectors.min(n_columns));
@@ -68,12 +68,12 @@ impl PanoramaFeatures {
     /// What a panorama looks like.
     ///
     /// # Errors
-    /// [`AppearanceError::ViewSize`] when it is of another size than the others, [`AppearanceError::BlankView`] when it has no contrast,
-    /// [`AppearanceError::SaturatedView`] when too many of its pixels are black or white.
-    pub fn describe(&self, panorama: &Panorama) -> Result<PanoramaDescriptor, AppearanceError> {
+    /// [`AppearanceMapError::ViewSize`] when it is of another size than the others, [`AppearanceMapError::BlankView`] when it has no contrast,
+    /// [`AppearanceMapError::SaturatedView`] when too many of its pixels are black or white.
+    pub fn describe(&self, panorama: &Panorama) -> Result<PanoramaDescriptor, AppearanceMapError> {
         let got = (panorama.n_columns(), panorama.n_rows());
         if got != self.size {
-            return Err(AppearanceError::ViewSize { expected: self.size, got });
+            return Err(AppearanceMapError::ViewSize { expected: self.size, got });
         }
         self.check_saturation(panorama)?;
         let mut cells = cell_means(panorama, self.n_rings, self.n_sectors, self.params.intensity_scale);
@@ -96,14 +96,14 @@ impl PanoramaFeatures {
         Ok(PanoramaDescriptor::quantized(self.n_rings, &spectrum.collect::<Vec<f64>>()))
     }
 
-    fn check_saturation(&self, panorama: &Panorama) -> Result<(), AppearanceError> {
+    fn check_saturation(&self, panorama: &Panorama) -> Result<(), AppearanceMapError> {
         let is_saturated = |pixel: &&[u8; 3]| {
             pixel.iter().all(|&value| value >= 254) || pixel.iter().all(|&value| value <= 1)
         };
         let n_saturated = panorama.pixels().iter().filter(is_saturated).count();
         let share = n_saturated as f64 / panorama.pixels().len() as f64;
         if share > self.params.max_saturated {
-            return Err(AppearanceError::SaturatedView { share, max_share: self.params.max_saturated });
+            return Err(AppearanceMapError::SaturatedView { share, max_share: self.params.max_saturated });
         }
         Ok(())
     }

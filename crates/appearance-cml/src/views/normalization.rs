@@ -1,4 +1,4 @@
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// How grey values of 0 … 255 are weighed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,20 +42,20 @@ impl BrightnessNormalization {
     /// Normalizes the cells of a view in place.
     ///
     /// # Errors
-    /// [`AppearanceError::BlankView`] when their standard deviation is less than `min_contrast` of the range of the tone.
+    /// [`AppearanceMapError::BlankView`] when their standard deviation is less than `min_contrast` of the range of the tone.
     pub(super) fn apply(
         self,
         tone: IntensityScale,
         min_contrast: f64,
         cells: &mut [f64],
-    ) -> Result<(), AppearanceError> {
+    ) -> Result<(), AppearanceMapError> {
         let n = cells.len() as f64;
         let mean = cells.iter().sum::<f64>() / n;
         let sigma = (cells.iter().map(|cell| (cell - mean).powi(2)).sum::<f64>() / n).sqrt();
         let contrast = sigma / tone.range();
         // A constant view has no contrast but what rounding leaves.
         if contrast <= min_contrast.max(1e-9) {
-            return Err(AppearanceError::BlankView { contrast, min_contrast });
+            return Err(AppearanceMapError::BlankView { contrast, min_contrast });
         }
         let (offset, scale) = match self {
             Self::None => (0.0, tone.range()),

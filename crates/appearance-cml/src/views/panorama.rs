@@ -1,4 +1,4 @@
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Which way the azimuth grows from column to column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,7 +20,7 @@ pub enum AzimuthDirection {
 /// let panorama = Panorama::from_rgb(4, 1, (0..12).collect())?;
 /// assert_eq!(panorama.row(0).next(), Some(&[0, 1, 2]));
 /// assert!(Panorama::from_rgb(4, 2, vec![0; 12]).is_err());
-/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Panorama {
@@ -33,9 +33,9 @@ impl Panorama {
     /// From `3 · n_columns · n_rows` bytes.
     ///
     /// # Errors
-    /// [`AppearanceError::PixelCount`] without pixels or when the bytes are not that many.
-    pub fn from_rgb(n_columns: usize, n_rows: usize, bytes: Vec<u8>) -> Result<Self, AppearanceError> {
-        let refused = AppearanceError::PixelCount { size: (n_columns, n_rows), n_bytes: bytes.len() };
+    /// [`AppearanceMapError::PixelCount`] without pixels or when the bytes are not that many.
+    pub fn from_rgb(n_columns: usize, n_rows: usize, bytes: Vec<u8>) -> Result<Self, AppearanceMapError> {
+        let refused = AppearanceMapError::PixelCount { size: (n_columns, n_rows), n_bytes: bytes.len() };
         let expected = n_columns.checked_mul(n_rows).and_then(|n| n.checked_mul(3));
         if bytes.is_empty() || expected != Some(bytes.len()) {
             return Err(refused);
@@ -74,7 +74,7 @@ impl Panorama {
     /// use wayfix_appearance_cml::Panorama;
     /// let panorama = Panorama::from_rgb(3, 1, vec![10, 10, 10, 20, 20, 20, 30, 30, 30])?;
     /// assert_eq!(panorama.turned(1).pixels(), [[20; 3], [30; 3], [10; 3]]);
-    /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+    /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
     /// ```
     pub fn turned(&self, n: usize) -> Self {
         let mut pixels = self.pixels.clone();

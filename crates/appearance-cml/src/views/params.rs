@@ -1,5 +1,5 @@
 use super::{AzimuthDirection, BrightnessNormalization, IntensityScale};
-use crate::{AppearanceError, check};
+use crate::{AppearanceMapError, check};
 
 /// How a panorama is described.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +49,8 @@ impl Default for PanoramaParams {
 
 impl PanoramaParams {
     /// # Errors
-    /// [`AppearanceError::Parameter`] for the first value outside its range.
-    pub(super) fn validate(&self) -> Result<(), AppearanceError> {
+    /// [`AppearanceMapError::Parameter`] for the first value outside its range.
+    pub(super) fn validate(&self) -> Result<(), AppearanceMapError> {
         let whole = |what, value: usize, holds, range| check::within(what, value as f64, holds, range);
         whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
         whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;
@@ -61,7 +61,7 @@ impl PanoramaParams {
     }
 
     /// No more harmonics than can be told apart.
-    pub(super) fn check_harmonics(&self, n_sectors: usize) -> Result<(), AppearanceError> {
+    pub(super) fn check_harmonics(&self, n_sectors: usize) -> Result<(), AppearanceMapError> {
         let holds = (2..=64.min(n_sectors / 2)).contains(&self.n_harmonics);
         let range = "from 2 to 64 and at most half the sectors and columns";
         check::within("n_harmonics", self.n_harmonics as f64, holds, range)

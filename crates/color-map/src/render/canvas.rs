@@ -1,5 +1,5 @@
 use super::{coverage::Coverage, outline::Outline, silhouette, view::ImagePoint, view::View};
-use crate::{Camera, ColorId, PixelSpan, map::Prism, tree::Facet};
+use crate::{ColorId, PinholeCamera, PixelSpan, map::Prism, tree::Facet};
 
 /// Draws convex shapes from front to back; drawn pixels are not overwritten.
 #[derive(Clone, Debug)]
@@ -10,7 +10,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    pub(super) fn new(camera: &Camera) -> Self {
+    pub(super) fn new(camera: &PinholeCamera) -> Self {
         let (width, height) = (camera.width(), camera.height());
         Self {
             outline: Outline::new(width, height),

@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use super::bits::{self, BITS};
-use crate::{Camera, ColorId, PixelSpan};
+use crate::{ColorId, PinholeCamera, PixelSpan};
 
 /// One bit a pixel and colour, to take the pixels near an edge away.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ struct Plane {
 }
 
 impl Margin {
-    pub(super) fn new(camera: &Camera, n_colors: usize) -> Self {
+    pub(super) fn new(camera: &PinholeCamera, n_colors: usize) -> Self {
         let (n_columns, n_rows) = (camera.width() as usize, camera.height() as usize);
         let words_per_row = n_columns.div_ceil(BITS);
         let plane = Plane { words: vec![0; words_per_row * n_rows], rows: 0..0 };

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose3;
 
 use super::{canvas::Canvas, margin::Margin, pose, view::View};
 use crate::{
-    Camera, ColorMap, LabelImage, PixelSpan, RenderError,
+    ColorMap, LabelImage, PinholeCamera, PixelSpan, RenderError,
     map::{PLANE_TOLERANCE_M, Prism},
     tree::{Face, Node, Solid},
 };
@@ -20,13 +20,13 @@ use crate::{
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::{Camera, ColorId, ColorMap, MapRenderer, ColoredShape, PixelSpan};
+/// use wayfix_color_map::{PinholeCamera, ColorId, ColorMap, MapRenderer, ColoredShape, PixelSpan};
 /// use wayfix_estimation_traits::{LieGroup, Pose3};
 ///
 /// let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| Vector3::new(2.0, y, z)).to_vec();
 /// let wall = ColoredShape::Polygon { color: ColorId(0), vertices };
 /// let map = Arc::new(ColorMap::new(vec!["white".into()], vec![wall])?);
-/// let mut projector = MapRenderer::new(map, Camera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
+/// let mut projector = MapRenderer::new(map, PinholeCamera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
 /// let mut spans = Vec::new();
 /// projector.spans(&Pose3::identity(), &mut |span| spans.push(span))?;
 /// // Half a pixel to either side of the middle, and pixel centres at the very edge belong to what is right of it and below.
@@ -36,7 +36,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct MapRenderer {
     map: Arc<ColorMap>,
-    camera: Camera,
+    camera: PinholeCamera,
     canvas: Canvas,
     todo: Vec<Step>,
     standing: Vec<Standing>,
@@ -65,7 +65,7 @@ struct Standing {
 
 impl MapRenderer {
     /// For one map and camera.
-    pub fn new(map: Arc<ColorMap>, camera: Camera) -> Self {
+    pub fn new(map: Arc<ColorMap>, camera: PinholeCamera) -> Self {
         Self {
             map,
             camera,
@@ -82,7 +82,7 @@ impl MapRenderer {
     }
 
     /// The camera.
-    pub fn camera(&self) -> &Camera {
+    pub fn camera(&self) -> &PinholeCamera {
         &self.camera
     }
 

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Pose3;
 
-use crate::Camera;
+use crate::PinholeCamera;
 
 /// A camera at a pose, as the linear map from the world to homogeneous pixels.
 ///
@@ -26,7 +26,7 @@ pub(super) struct ImagePoint {
 }
 
 impl View {
-    pub(super) fn new(camera: &Camera, pose: &Pose3<f64>) -> Self {
+    pub(super) fn new(camera: &PinholeCamera, pose: &Pose3<f64>) -> Self {
         let to_camera = pose.rotation.to_rotation_matrix().into_inner().transpose();
         let to_pixels =
             Matrix3::new(camera.cx(), -camera.fx(), 0.0, camera.cy(), 0.0, -camera.fy(), 1.0, 0.0, 0.0);

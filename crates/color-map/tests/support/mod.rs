@@ -3,7 +3,7 @@
 
 use rand::{Rng, RngExt};
 use wayfix_color_map::{
-    Camera, ColorId, ColorMap, LabelImage,
+    ColorId, ColorMap, LabelImage, PinholeCamera,
     nalgebra::{Quaternion, UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::Pose3;
@@ -23,7 +23,7 @@ pub(crate) fn random_pose<R: Rng + ?Sized>(rng: &mut R, reach: f64) -> Pose3<f64
 }
 
 /// The colour that every pixel's centre ray meets.
-pub(crate) fn cast_labels(map: &ColorMap, camera: &Camera, pose: &Pose3<f64>) -> LabelImage {
+pub(crate) fn cast_labels(map: &ColorMap, camera: &PinholeCamera, pose: &Pose3<f64>) -> LabelImage {
     let mut codes = Vec::new();
     for row in 0..camera.height() {
         for column in 0..camera.width() {
@@ -44,9 +44,9 @@ pub(crate) fn first_difference(
 }
 
 /// Any size, also a single pixel, and an axis anywhere, also beside the image.
-pub(crate) fn random_camera<R: Rng + ?Sized>(rng: &mut R) -> Camera {
+pub(crate) fn random_camera<R: Rng + ?Sized>(rng: &mut R) -> PinholeCamera {
     let (width, height) = (rng.random_range(1..140), rng.random_range(1..80));
     let (fx, fy) = (rng.random_range(20.0..200.0), rng.random_range(20.0..200.0));
     let mut axis = |side: u32| f64::from(side) * rng.random_range(-0.2..1.2);
-    Camera::new(width, height, fx, fy, axis(width), axis(height)).expect("a valid camera")
+    PinholeCamera::new(width, height, fx, fy, axis(width), axis(height)).expect("a valid camera")
 }

@@ -14,12 +14,12 @@ use crate::ColorModelError;
 /// histories. Clones share their filters until one of them learns.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
-/// use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingParams};
+/// use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingFilterParams};
 /// use wayfix_gaussian_core::Gaussian;
 /// use wayfix_kalman::MarkovChain;
 /// let light = |y: f64| {
 ///     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
-///     LightingFilter::new(prior, LightingParams::default())
+///     LightingFilter::new(prior, LightingFilterParams::default())
 /// };
 /// let mut bank = LightingBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
 /// bank.predict(0.04)?;

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use wayfix_color_map::ColorId;
 use wayfix_gaussian_core::{Gaussian, check_covariance};
 
-use super::{ColorDensity, ColorMeans, LightingParams, UnseenColorRule, update::observe};
+use super::{ColorDensity, ColorMeans, LightingFilterParams, UnseenColorRule, update::observe};
 use crate::ColorModelError;
 
 /// A Kalman filter over the means of all map colours, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV, for one kind of light.
@@ -13,7 +13,7 @@ use crate::ColorModelError;
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_map::ColorId;
-/// use wayfix_color_model::{ColorMeans, LightingFilter, LightingParams};
+/// use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterParams};
 /// use wayfix_gaussian_core::Gaussian;
 /// // Two colours that become brighter together: correlation 0.9 of standard deviations of 30.
 /// let mut covariance = DMatrix::from_diagonal_element(6, 6, 900.0);
@@ -21,7 +21,7 @@ use crate::ColorModelError;
 ///     (covariance[(i, i + 3)], covariance[(i + 3, i)]) = (810.0, 810.0);
 /// }
 /// let prior = Gaussian::new(DVector::from_element(6, 128.0), covariance)?;
-/// let mut light = LightingFilter::new(prior, LightingParams::default())?;
+/// let mut light = LightingFilter::new(prior, LightingFilterParams::default())?;
 /// light.update(&ColorMeans::new([(Some(Vector3::new(60.0, 128.0, 128.0)), 900), (None, 0)]))?;
 /// let unseen = light.color(ColorId(1)).mean;
 /// assert!((unseen.x - 71.0).abs() < 2.0); // 128 - 68 · 810/964
@@ -30,7 +30,7 @@ use crate::ColorModelError;
 #[derive(Clone, Debug)]
 pub struct LightingFilter {
     prior: Arc<Gaussian<DVector<f64>>>,
-    params: LightingParams,
+    params: LightingFilterParams,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
 }
@@ -40,7 +40,7 @@ impl LightingFilter {
     /// # Errors
     /// Returns an error if the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
     /// billion times that of an image's mean (next to which the mean would be without noise), or a parameter is out of range.
-    pub fn new(prior: Gaussian<DVector<f64>>, params: LightingParams) -> Result<Self, ColorModelError> {
+    pub fn new(prior: Gaussian<DVector<f64>>, params: LightingFilterParams) -> Result<Self, ColorModelError> {
         params.check()?;
         let n = prior.mean().len();
         if n == 0 || !n.is_multiple_of(3) || n > 3 * MOST_COLORS {
@@ -96,7 +96,7 @@ impl LightingFilter {
     }
 
     /// The parameters.
-    pub fn params(&self) -> &LightingParams {
+    pub fn params(&self) -> &LightingFilterParams {
         &self.params
     }
 
@@ -127,7 +127,7 @@ impl LightingFilter {
     /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
-        let LightingParams { lighting_drift: drift, .. } = self.params;
+        let LightingFilterParams { lighting_drift: drift, .. } = self.params;
         drift.move_mean(seconds, &self.prior, &mut self.mean);
         drift.widen(seconds, &self.prior, |i| self.params.max_variance(i), &mut self.covariance);
         Ok(())

@@ -13,5 +13,5 @@ pub use bank::{LightingBank, SelectedLightingFilter};
 pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;
-pub use params::{LightingDrift, LightingParams, UnseenColorRule};
+pub use params::{LightingDrift, LightingFilterParams, UnseenColorRule};
 pub use tracker::{Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingTracker};

@@ -9,7 +9,7 @@ use crate::ColorModelError;
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct LightingParams {
+pub struct LightingFilterParams {
     /// Variance of a pixel about the mean of its colour, $`ν`$ (Y, U, V), the same for all colours: shade over the field, vignetting, noise.
     pub pixel_color_variance: Vector3<f64>,
     /// Variance of an image's mean of a colour about the light's, (Y, U, V). The paper uses $`ν`$: the part of a colour in one image has its own
@@ -48,7 +48,7 @@ pub enum UnseenColorRule {
     Regress,
 }
 
-impl Default for LightingParams {
+impl Default for LightingFilterParams {
     /// Standard deviations of 12, 6, 6 for pixels and 8, 4, 4 for means; return to the prior within minutes.
     fn default() -> Self {
         Self {
@@ -60,7 +60,7 @@ impl Default for LightingParams {
     }
 }
 
-impl LightingParams {
+impl LightingFilterParams {
     /// Maximum variance of component `i` of the state: a billion times that of an image's mean. An update then leaves a billionth of the
     /// covariance, seven digits above rounding.
     pub(super) fn max_variance(&self, i: usize) -> f64 {

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 /// With $`c = Σ e_i`$ and $`s = Σ_{ii} + r`$ the new covariance is $`Σ - c c^T / s`$. Entries across the diagonal are computed by the same two
 /// products, $`(c_j c_k) / s`$, so it is exactly symmetric. Row and column $`i`$ are multiplied by $`r / s`$, without a difference, as in Joseph's
 /// form. Since $`c c^T ⪯ Σ_{ii} Σ`$, the remainder is at least $`(r / s)\, Σ`$: positive definite as long as $`r / s`$ is far above rounding, which
-/// [`LightingParams`](super::LightingParams) ensures.
+/// [`LightingFilterParams`](super::LightingFilterParams) ensures.
 pub(super) fn observe(
     mean: &mut DVector<f64>,
     covariance: &mut DMatrix<f64>,

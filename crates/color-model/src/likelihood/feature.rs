@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Vector2, Vector3};
-use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PixelSpan};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PixelSpan};
 use wayfix_estimation_traits::{LogWeight, Pose3};
 
 use super::{CameraPoseLikelihood, FeatureLikelihoodParams};
@@ -27,14 +27,14 @@ use crate::{
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::{PostBand, Camera, ColorId, ColorMap, MapRenderer, ColoredShape};
+/// use wayfix_color_map::{PostBand, PinholeCamera, ColorId, ColorMap, MapRenderer, ColoredShape};
 /// use wayfix_color_model::{FeatureLikelihoodParams, FeatureLikelihood, CameraPoseLikelihood};
 /// use wayfix_estimation_traits::{LieGroup, Pose3};
 /// let beacon = |y, color| {
 ///     ColoredShape::Post { x: 2.0, y, radius: 0.1, bands: vec![PostBand { color: ColorId(color), from: 0.0, to: 0.4 }] }
 /// };
 /// let map = Arc::new(ColorMap::new(vec!["pink".into(), "cyan".into()], vec![beacon(0.4, 0), beacon(-0.4, 1)])?);
-/// let camera = Camera::from_field_of_view(104, 80, 1.0, 0.8)?;
+/// let camera = PinholeCamera::from_field_of_view(104, 80, 1.0, 0.8)?;
 /// let looking = |y| Pose3 { translation: Vector3::new(0.0, y, 0.2), ..Pose3::identity() };
 /// let mut projector = MapRenderer::new(map, camera);
 /// let labels: Vec<u8> = projector
@@ -152,7 +152,7 @@ struct Feature {
 
 fn features(
     blobs: &[ColorBlob],
-    camera: &Camera,
+    camera: &PinholeCamera,
     params: &FeatureLikelihoodParams,
     is_feature: &[bool],
 ) -> Vec<Feature> {

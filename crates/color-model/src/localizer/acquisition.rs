@@ -1,4 +1,4 @@
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 
 use crate::ColorModelError;
 
@@ -100,7 +100,7 @@ impl AcquisitionParams {
     }
 
     /// The camera of the shrunk images.
-    pub(crate) fn camera(&self, camera: &Camera) -> Result<Camera, ColorModelError> {
+    pub(crate) fn camera(&self, camera: &PinholeCamera) -> Result<PinholeCamera, ColorModelError> {
         let (what, value) = ("shrinking of images", f64::from(self.shrink));
         camera.shrunk(self.shrink).map_err(|_| ColorModelError::OutOfRange { what, value })
     }

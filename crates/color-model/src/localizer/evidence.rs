@@ -141,14 +141,14 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use nalgebra::{DMatrix, DVector, Vector3};
-    use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape};
+    use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
     use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
     use wayfix_gaussian_core::Gaussian;
     use wayfix_kalman::MarkovChain;
 
     use super::*;
     use crate::{
-        LightingBank, LightingFilter, LightingParams, LocalizerParams, Start, YuvImage,
+        LightingBank, LightingFilter, LightingFilterParams, LocalizerParams, Start, YuvImage,
         localizer::{
             light::Light,
             search::Premise,
@@ -167,12 +167,12 @@ mod tests {
         let prior = DVector::from_vec(vec![100.0, 128.0, 128.0]);
         let filter = LightingFilter::new(
             Gaussian::new(prior, DMatrix::from_diagonal_element(3, 3, 900.0)).unwrap(),
-            LightingParams::default(),
+            LightingFilterParams::default(),
         );
         let bank = LightingBank::new(vec![filter.unwrap()], MarkovChain::sticky(1, 0.9).unwrap()).unwrap();
         let params = LocalizerParams::default();
         let light = Arc::new(Light::new(bank, &params.pixels).unwrap());
-        let camera = Camera::from_field_of_view(16, 16, 1.0, 1.0).unwrap();
+        let camera = PinholeCamera::from_field_of_view(16, 16, 1.0, 1.0).unwrap();
         let shot = |_| {
             let image = YuvImage::new(16, 16, vec![[100, 128, 128]; 256]).unwrap();
             Shot { image, mount: Pose3::identity(), walked: Walked::default() }

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use rand::Rng;
-use wayfix_color_map::{Camera, ColorMap};
+use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_estimation_traits::{Pose2, Pose3, SampleMotion};
 use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle};
 
@@ -26,7 +26,7 @@ const SURE: f64 = 0.95;
 /// Kalman filter of the light.
 pub struct ColorLocalizer {
     pub(super) map: Arc<ColorMap>,
-    pub(super) camera: Camera,
+    pub(super) camera: PinholeCamera,
     pub(super) area: Area,
     pub(super) background: Option<BackgroundColorModel>,
     pub(super) params: LocalizerParams,
@@ -52,7 +52,7 @@ impl ColorLocalizer {
     /// When a parameter is out of range or too large for the camera's images, the map is empty, or its colours and the light's differ in number.
     pub fn new<R: Rng + ?Sized>(
         map: Arc<ColorMap>,
-        camera: Camera,
+        camera: PinholeCamera,
         light: LightingBank,
         start: &Start,
         params: LocalizerParams,

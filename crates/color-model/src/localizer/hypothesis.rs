@@ -112,14 +112,14 @@ mod tests {
 
     use super::*;
     use crate::{
-        LightingBank, LightingFilter, LightingParams, PixelLikelihoodParams,
+        LightingBank, LightingFilter, LightingFilterParams, PixelLikelihoodParams,
         localizer::{CameraError, CameraLocation, views::Views, weighed::Weighed},
     };
 
     fn light(brightness: f64) -> Arc<Light> {
         let prior =
             Gaussian::new(DVector::from_element(3, brightness), DMatrix::from_diagonal_element(3, 3, 100.0));
-        let filter = LightingFilter::new(prior.unwrap(), LightingParams::default()).unwrap();
+        let filter = LightingFilter::new(prior.unwrap(), LightingFilterParams::default()).unwrap();
         let bank = LightingBank::new(vec![filter], MarkovChain::sticky(1, 0.9).unwrap()).unwrap();
         Arc::new(Light::new(bank, &PixelLikelihoodParams::default()).unwrap())
     }

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use rand::Rng;
-use wayfix_color_map::{Camera, ColorMap};
+use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle};
 
@@ -45,7 +45,7 @@ pub(crate) struct Premise<'a> {
 /// Looks for the robot in several frames at once, under one light.
 pub(crate) struct Search<'a> {
     pub(super) map: &'a Arc<ColorMap>,
-    pub(super) camera: Camera,
+    pub(super) camera: PinholeCamera,
     pub(super) area: &'a Area,
     pub(super) start: &'a Start,
     pub(super) params: &'a LocalizerParams,
@@ -62,7 +62,7 @@ pub(crate) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(crate) fn new(
         map: &'a Arc<ColorMap>,
-        camera: Camera,
+        camera: PinholeCamera,
         area: &'a Area,
         params: &'a LocalizerParams,
         Premise { start, light, is_light_known }: Premise<'a>,

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
-use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
 use wayfix_estimation_traits::Pose2;
 
 use super::{light::Light, shots::Shot, start::Area};
@@ -50,7 +50,7 @@ impl Sightings {
     pub(crate) fn of<'a>(
         images: impl Iterator<Item = (usize, &'a YuvImage)>,
         shots: &[Shot],
-        camera: &Camera,
+        camera: &PinholeCamera,
         map: &ColorMap,
         light: &Light,
         nats: impl Fn([u8; 3]) -> f64,
@@ -96,7 +96,7 @@ impl Sightings {
     }
 }
 
-fn sighting(blob: &ColorBlob, at: usize, shot: &Shot, camera: &Camera) -> Sighting {
+fn sighting(blob: &ColorBlob, at: usize, shot: &Shot, camera: &PinholeCamera) -> Sighting {
     let ray: Vector3<f64> = shot.mount.rotation * camera.ray(blob.centroid.0, blob.centroid.1);
     Sighting {
         shot: at,

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use wayfix_color_map::{Camera, ColorMap, MapRenderer};
+use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_estimation_traits::Pose3;
 
 use super::{
@@ -26,7 +26,7 @@ struct Scratch {
 /// Everything that weighing needs besides the particles.
 pub(crate) struct Weighing<'a> {
     pub(crate) map: &'a Arc<ColorMap>,
-    pub(crate) camera: Camera,
+    pub(crate) camera: PinholeCamera,
     /// For each colour.
     pub(crate) frames: &'a [PrefixSumImage],
     pub(crate) mount: &'a Pose3<f64>,

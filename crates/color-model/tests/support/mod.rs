@@ -6,7 +6,7 @@ pub(crate) mod painted;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
-use wayfix_color_model::{ColorMeans, LightingFilter, LightingParams};
+use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterParams};
 use wayfix_gaussian_core::Gaussian;
 
 pub(crate) fn normal(rng: &mut impl Rng) -> f64 {
@@ -44,7 +44,7 @@ pub(crate) fn common_gain(colors: &[[f64; 3]], spread: f64) -> Gaussian<DVector<
     Gaussian::new(mean, covariance).expect("valid by construction")
 }
 
-pub(crate) fn filter(prior: Gaussian<DVector<f64>>, params: LightingParams) -> LightingFilter {
+pub(crate) fn filter(prior: Gaussian<DVector<f64>>, params: LightingFilterParams) -> LightingFilter {
     LightingFilter::new(prior, params).expect("valid by construction")
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::Rng;
-use wayfix_color_map::{Camera, ColorId, ColorMap, MapRenderer};
-use wayfix_color_model::{LightingBank, LightingFilter, LightingParams, YuvImage};
+use wayfix_color_map::{ColorId, ColorMap, MapRenderer, PinholeCamera};
+use wayfix_color_model::{LightingBank, LightingFilter, LightingFilterParams, YuvImage};
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
@@ -26,7 +26,7 @@ const PIXEL_SIGMA: f64 = 4.0;
 /// The field, and a robot's camera above it.
 pub(crate) struct Scene {
     pub(crate) map: Arc<ColorMap>,
-    pub(crate) camera: Camera,
+    pub(crate) camera: PinholeCamera,
     projector: MapRenderer,
 }
 
@@ -34,7 +34,7 @@ impl Scene {
     /// Half as fine as the camera of an ERS-7, so that tests take a quarter of the time.
     pub(crate) fn new() -> Self {
         let map = Arc::new(field_map().expect("a constant map"));
-        let camera = Camera::from_field_of_view(104, 80, 0.993, 0.789).expect("an ERS-7");
+        let camera = PinholeCamera::from_field_of_view(104, 80, 0.993, 0.789).expect("an ERS-7");
         let projector = MapRenderer::new(Arc::clone(&map), camera);
         Self { map, camera, projector }
     }
@@ -98,7 +98,7 @@ pub(crate) fn light() -> LightingFilter {
         (false, false) => 0.0,
     });
     let prior = Gaussian::new(mean, covariance).expect("positive definite");
-    LightingFilter::new(prior, LightingParams::default()).expect("default parameters")
+    LightingFilter::new(prior, LightingFilterParams::default()).expect("default parameters")
 }
 
 pub(crate) fn bank() -> LightingBank {

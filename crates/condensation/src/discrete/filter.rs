@@ -10,7 +10,7 @@ const UNDERFLOW: f64 = 1e-250;
 
 /// The state with the largest belief, and that belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BestState {
+pub struct MostProbableState {
     /// Its number; the lowest of several that are equal.
     pub state: usize,
     /// The probability that it is the true one, as far as the filter knows.
@@ -129,17 +129,17 @@ impl DiscreteFilter {
     }
 
     /// The state with the largest belief.
-    pub fn best(&self) -> BestState {
+    pub fn best(&self) -> MostProbableState {
         let in_chunks = fold_chunks(&self.belief, |first, chunk| {
-            let mut best = BestState { state: first, confidence: chunk[0] };
+            let mut best = MostProbableState { state: first, confidence: chunk[0] };
             for (i, &confidence) in chunk.iter().enumerate() {
                 if confidence > best.confidence {
-                    best = BestState { state: first + i, confidence };
+                    best = MostProbableState { state: first + i, confidence };
                 }
             }
             best
         });
-        let first = BestState { state: 0, confidence: f64::NEG_INFINITY };
+        let first = MostProbableState { state: 0, confidence: f64::NEG_INFINITY };
         in_chunks
             .into_iter()
             .fold(first, |best, next| if next.confidence > best.confidence { next } else { best })

@@ -17,7 +17,7 @@ mod transition;
 pub use dense::DenseTransition;
 pub use diffusion::DiffusionKernel;
 pub(crate) use filter::entropy;
-pub use filter::{BestState, DiscreteFilter};
+pub use filter::{DiscreteFilter, MostProbableState};
 pub use graph::{PlaceGraph, PlaceGraphMove};
 pub use grid::{GridMove, PositionGrid};
 pub use heading_grid::{HeadingGrid, Maneuver};

@@ -1,7 +1,7 @@
 use rand::{Rng, RngExt};
 
 use crate::discrete::entropy;
-use crate::{BestState, ShortestPathLengths, StateSpace, ViewLocalizer};
+use crate::{MostProbableState, ShortestPathLengths, StateSpace, ViewLocalizer};
 
 /// How the next action is chosen while the robot is not certain where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,20 +62,22 @@ fn most_informative<S: StateSpace>(
     let candidates = candidates(localizer.belief(), hypotheses);
     let score = |&index: &usize| {
         let action = space.actions()[index];
-        let moved =
-            |c: &BestState| BestState { state: space.step(c.state, action), confidence: c.confidence };
-        let moved: Vec<BestState> = candidates.iter().map(moved).collect();
+        let moved = |c: &MostProbableState| MostProbableState {
+            state: space.step(c.state, action),
+            confidence: c.confidence,
+        };
+        let moved: Vec<MostProbableState> = candidates.iter().map(moved).collect();
         (expected_entropy(localizer, &moved), index)
     };
     open.iter().map(score).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, index)| index)
 }
 
 /// The best places, with their beliefs normalized among themselves.
-fn candidates(belief: &[f64], n: usize) -> Vec<BestState> {
-    let mut all: Vec<BestState> = belief
+fn candidates(belief: &[f64], n: usize) -> Vec<MostProbableState> {
+    let mut all: Vec<MostProbableState> = belief
         .iter()
         .enumerate()
-        .map(|(state, &confidence)| BestState { state, confidence })
+        .map(|(state, &confidence)| MostProbableState { state, confidence })
         .filter(|c| c.confidence > 0.0)
         .collect();
     all.sort_by(|a, b| b.confidence.total_cmp(&a.confidence).then(a.state.cmp(&b.state)));
@@ -86,9 +88,10 @@ fn candidates(belief: &[f64], n: usize) -> Vec<BestState> {
 }
 
 /// $`\sum_i w_i\, H(p(j \mid \text{the view of } i))`$ over the candidates: each in turn is imagined to be the truth.
-fn expected_entropy(localizer: &ViewLocalizer, candidates: &[BestState]) -> f64 {
-    let after = |truth: &BestState| {
-        let log_weight = |c: &BestState| c.confidence.ln() + localizer.confusion(truth.state, c.state);
+fn expected_entropy(localizer: &ViewLocalizer, candidates: &[MostProbableState]) -> f64 {
+    let after = |truth: &MostProbableState| {
+        let log_weight =
+            |c: &MostProbableState| c.confidence.ln() + localizer.confusion(truth.state, c.state);
         let log_weights: Vec<f64> = candidates.iter().map(log_weight).collect();
         let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut weights: Vec<f64> = log_weights.iter().map(|l| (l - largest).exp()).collect();

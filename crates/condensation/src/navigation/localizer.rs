@@ -8,7 +8,7 @@ use crate::error::{check_size, probability};
 use crate::learning::DisturbanceBelief;
 use crate::navigation::moment_transition::MomentTransition;
 use crate::{
-    AppearanceModel, BestState, CondensationError, DiscreteFilter, LightChange, MeasurementOutcome,
+    AppearanceModel, CondensationError, DiscreteFilter, LightChange, MeasurementOutcome, MostProbableState,
     TransitionModel, ViewDisturbance,
 };
 
@@ -134,11 +134,11 @@ impl ViewLocalizer {
     }
 
     /// The place with the largest belief.
-    pub fn best(&self) -> BestState {
-        let better = |best: BestState, (state, &confidence): (usize, &f64)| {
-            if confidence > best.confidence { BestState { state, confidence } } else { best }
+    pub fn best(&self) -> MostProbableState {
+        let better = |best: MostProbableState, (state, &confidence): (usize, &f64)| {
+            if confidence > best.confidence { MostProbableState { state, confidence } } else { best }
         };
-        self.places.iter().enumerate().fold(BestState { state: 0, confidence: 0.0 }, better)
+        self.places.iter().enumerate().fold(MostProbableState { state: 0, confidence: 0.0 }, better)
     }
 
     /// Entropy of the belief over places, in nats.

@@ -1,4 +1,4 @@
-use crate::BestState;
+use crate::MostProbableState;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub struct NavigationReport {
     /// Moves until confidence first was what the parameters ask for, if it ever was.
     pub steps_to_certainty: Option<usize>,
     /// The place that is believed in at the end, and how much.
-    pub best: BestState,
+    pub best: MostProbableState,
     /// How often the robot noticed that it was elsewhere, and started over.
     pub kidnappings: usize,
 }

@@ -8,23 +8,23 @@ use super::{PlotError, SvgPlot};
 /// Error of a planar pose against time, inside the ±3σ band that the filter claims: x, y and heading.
 ///
 /// ```
-/// use wayfix_evaluation::plot::{ErrorPlot, ErrorSample};
-/// let sample = |k: u32| ErrorSample { t: f64::from(k), error: [0.01, -0.02, 0.003], sigma: [0.02, 0.02, 0.01] };
-/// let picture = ErrorPlot { title: "Error".to_owned(), samples: (0..10).map(sample).collect() }.draw()?;
+/// use wayfix_evaluation::plot::{PoseErrorPlot, PoseErrorSample};
+/// let sample = |k: u32| PoseErrorSample { t: f64::from(k), error: [0.01, -0.02, 0.003], sigma: [0.02, 0.02, 0.01] };
+/// let picture = PoseErrorPlot { title: "Error".to_owned(), samples: (0..10).map(sample).collect() }.draw()?;
 /// assert!(picture.svg.contains("100.0 % inside"));
 /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ErrorPlot {
+pub struct PoseErrorPlot {
     /// Caption.
     pub title: String,
     /// Errors in the order of time.
-    pub samples: Vec<ErrorSample>,
+    pub samples: Vec<PoseErrorSample>,
 }
 
 /// Error of the estimated pose at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ErrorSample {
+pub struct PoseErrorSample {
     /// Seconds since the start.
     pub t: f64,
     /// Estimate minus truth: x and y in metres, heading in radians.
@@ -38,7 +38,7 @@ const PANEL_HEIGHT: f64 = 92.0;
 const COMPONENTS: [(&str, f64); 3] =
     [("x error, m", 1.0), ("y error, m", 1.0), ("heading error, °", 180.0 / std::f64::consts::PI)];
 
-impl ErrorPlot {
+impl PoseErrorPlot {
     /// The picture.
     ///
     /// # Errors
@@ -58,11 +58,11 @@ impl ErrorPlot {
         Frame { title: &self.title, alt, legend, x_label: "time, s" }.draw(&plates, |n, panel| {
             let k = components[n];
             let unit = COMPONENTS[k].1;
-            let band = |sample: &ErrorSample| {
+            let band = |sample: &PoseErrorSample| {
                 (sample.t, -3.0 * unit * sample.sigma[k], 3.0 * unit * sample.sigma[k])
             };
             panel.band(&self.samples.iter().map(band).collect::<Vec<_>>(), Ink::ESTIMATE)?;
-            let error = |sample: &ErrorSample| (sample.t, unit * sample.error[k]);
+            let error = |sample: &PoseErrorSample| (sample.t, unit * sample.error[k]);
             panel.series(&self.samples.iter().map(error).collect::<Vec<_>>(), Ink::ESTIMATE, 1.2)
         })
     }

@@ -7,23 +7,23 @@ use super::{PlotError, SvgPlot};
 /// Several named series against one abscissa.
 ///
 /// ```
-/// use wayfix_evaluation::plot::{LinesPlot, NamedBand, AxisScale, PlotSeries};
+/// use wayfix_evaluation::plot::{LinePlot, PlotBand, AxisScale, PlotSeries};
 /// let powers = |exponent: i32| (1..50).map(|n| (f64::from(n), f64::from(n).powi(exponent))).collect();
-/// let plot = LinesPlot {
+/// let plot = LinePlot {
 ///     title: "Cost".to_owned(),
 ///     x_label: "landmarks".to_owned(),
 ///     y_label: "multiplications".to_owned(),
 ///     series: vec![PlotSeries::new("dense", powers(3)), PlotSeries::new("sparse", powers(2))],
 ///     x_scale: AxisScale::Log10,
 ///     y_scale: AxisScale::Log10,
-///     band: Some(NamedBand { name: "a millisecond".to_owned(), low: 1e5, high: 1e6 }),
+///     band: Some(PlotBand { name: "a millisecond".to_owned(), low: 1e5, high: 1e6 }),
 /// };
 /// let svg = plot.draw()?.svg;
 /// assert!(svg.contains("sparse") && svg.contains("a millisecond"));
 /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LinesPlot {
+pub struct LinePlot {
     /// Caption.
     pub title: String,
     /// Label of the abscissa, with its unit.
@@ -37,7 +37,7 @@ pub struct LinesPlot {
     /// Scale of the ordinate.
     pub y_scale: AxisScale,
     /// Expected range of the ordinates.
-    pub band: Option<NamedBand>,
+    pub band: Option<PlotBand>,
 }
 
 /// A named line.
@@ -58,7 +58,7 @@ impl PlotSeries {
 
 /// A range of ordinates, over all abscissas.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct NamedBand {
+pub struct PlotBand {
     /// Its name in the legend.
     pub name: String,
     /// Its lower edge.
@@ -69,7 +69,7 @@ pub struct NamedBand {
 
 const PANEL_HEIGHT: f64 = 220.0;
 
-impl LinesPlot {
+impl LinePlot {
     /// The picture.
     ///
     /// # Errors

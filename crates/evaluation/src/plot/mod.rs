@@ -4,10 +4,10 @@
 //! | plot | shows |
 //! | --- | --- |
 //! | [`MapPlot`] | paths and landmarks with 2σ ellipses, one scale on both axes |
-//! | [`ErrorPlot`] | x, y and heading error against time inside their ±3σ bands |
+//! | [`PoseErrorPlot`] | x, y and heading error against time inside their ±3σ bands |
 //! | [`ConsistencyPlot`] | NEES or NIS against time, its band and its moving mean |
-//! | [`TimesPlot`] | what each step cost, with the median |
-//! | [`LinesPlot`] | any named series, linear or logarithmic |
+//! | [`StepTimesPlot`] | what each step cost, with the median |
+//! | [`LinePlot`] | any named series, linear or logarithmic |
 //! | [`EllipsesPlot`] | covariance ellipses in the plane, a panel for each group |
 //! | [`FilmStrip`] | camera frames in rows |
 //!
@@ -29,12 +29,12 @@ mod times;
 pub use consistency::ConsistencyPlot;
 pub use ellipses::{EllipsesPlot, NamedEllipse};
 pub use error::PlotError;
-pub use error_plot::{ErrorPlot, ErrorSample};
+pub use error_plot::{PoseErrorPlot, PoseErrorSample};
 pub use film_strip::{FilmStrip, FilmStripFrame};
-pub use lines::{LinesPlot, NamedBand, PlotSeries};
+pub use lines::{LinePlot, PlotBand, PlotSeries};
 pub use map::{EstimatedLandmark, MapPlot};
 pub use picture::SvgPlot;
 pub use svg::axis::AxisScale;
 pub(crate) use svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub(crate) use svg::markup::escape;
-pub use times::TimesPlot;
+pub use times::StepTimesPlot;

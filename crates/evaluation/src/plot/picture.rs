@@ -21,8 +21,8 @@ pub struct SvgPlot {
 impl SvgPlot {
     /// The picture as a separate file: the same element with the palette inside.
     /// ```
-    /// use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
-    /// let plot = LinesPlot { series: vec![PlotSeries::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };
+    /// use wayfix_evaluation::plot::{LinePlot, PlotSeries};
+    /// let plot = LinePlot { series: vec![PlotSeries::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };
     /// assert!(plot.draw()?.standalone().contains("prefers-color-scheme: dark"));
     /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
     /// ```

@@ -9,13 +9,13 @@ use super::{PlotError, SvgPlot};
 
 /// Cost of each step, over the step number or the size of the state, with the median.
 /// ```
-/// use wayfix_evaluation::plot::TimesPlot;
-/// let plot = TimesPlot { points: (1..100).map(|n| (f64::from(n), f64::from(n * n))).collect(), ..TimesPlot::default() };
+/// use wayfix_evaluation::plot::StepTimesPlot;
+/// let plot = StepTimesPlot { points: (1..100).map(|n| (f64::from(n), f64::from(n * n))).collect(), ..StepTimesPlot::default() };
 /// assert!(plot.draw()?.alt.contains("median 2500"));
 /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct TimesPlot {
+pub struct StepTimesPlot {
     /// Caption.
     pub title: String,
     /// Label of the abscissa: "step", "state dimension".
@@ -28,7 +28,7 @@ pub struct TimesPlot {
     pub y_scale: AxisScale,
 }
 
-impl Default for TimesPlot {
+impl Default for StepTimesPlot {
     fn default() -> Self {
         Self {
             title: "Step time".to_owned(),
@@ -48,7 +48,7 @@ const CELLS: (f64, f64) = (150.0, 56.0);
 /// Dots of a picture: about 45 kB of text.
 const DOT_BUDGET: usize = 650;
 
-impl TimesPlot {
+impl StepTimesPlot {
     /// The picture.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+use wayfix_evaluation::plot::{LinePlot, PlotSeries};
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
@@ -42,12 +42,12 @@ pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> 
             PlotSeries::new("active forgetting", points(active)),
         ]
     });
-    let plot = LinesPlot {
+    let plot = LinePlot {
         title: "References in a lab whose light changes (first seed)".to_owned(),
         x_label: "step".to_owned(),
         y_label: "references".to_owned(),
         series,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     let note = format!(
         "{} seeds; somebody switches lamps or draws a curtain every {SWITCHING_S} s in the mean; empty map, odometry as it is.",

@@ -12,7 +12,7 @@ use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use wayfix_evaluation::errors::proportion_interval;
-use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+use wayfix_evaluation::plot::{LinePlot, PlotSeries};
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
@@ -180,7 +180,7 @@ fn report(title: &str, setup: &CmlExperimentSetup, courses: &[SimulatedDriveResu
     })
 }
 
-fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinesPlot {
+fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinePlot {
     let n_steps = courses.iter().map(|course| course.errors.len()).min().unwrap_or(0);
     let quantile = |share: f64| {
         let at = |step: usize| {
@@ -191,7 +191,7 @@ fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinesPlot {
         };
         (0..n_steps).map(at).collect()
     };
-    LinesPlot {
+    LinePlot {
         title: title.to_owned(),
         x_label: "travelled, m".to_owned(),
         y_label: "position error, m".to_owned(),
@@ -200,6 +200,6 @@ fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinesPlot {
             PlotSeries::new("90 % of the runs are below", quantile(0.9)),
             PlotSeries::new("95 %", quantile(0.95)),
         ],
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }

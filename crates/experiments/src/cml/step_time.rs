@@ -8,7 +8,7 @@ use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
 use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveStep, localize_trip};
-use wayfix_evaluation::plot::{AxisScale, LinesPlot, PlotSeries, statistics::quantile};
+use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotSeries, statistics::quantile};
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 use wayfix_systems::system::Stopwatch;
@@ -60,7 +60,7 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
             map = localizer.into_map();
         }
     }
-    let plot = LinesPlot {
+    let plot = LinePlot {
         title: "Computing time of a step".to_owned(),
         x_label: "references".to_owned(),
         y_label: "ms".to_owned(),
@@ -74,7 +74,7 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         ],
         x_scale: AxisScale::Log10,
         y_scale: AxisScale::Log10,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     let of = |(what, times): (&str, &[(f64, f64)])| {
         let named = |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}"), *ms, "ms");

@@ -3,7 +3,7 @@ use wayfix_appearance_cml::{
     AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorParams, IndoorStep};
+use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorDriveStep, IndoorParams};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::route::Route;
 
@@ -41,7 +41,7 @@ impl SimulatedDrive {
         let params_of_view =
             PanoramaParams { azimuth_direction: AzimuthDirection::Clockwise, ..PanoramaParams::default() };
         let features = PanoramaFeatures::new(params_of_view, camera.n_columns, camera.n_rings)?;
-        let step = |step: IndoorStep| {
+        let step = |step: IndoorDriveStep| {
             let panorama = Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)?;
             let view = features.describe(&panorama).ok();
             Ok(SimulatedDriveStep { odometry: step.odometry, pose: step.pose, view })

@@ -10,7 +10,7 @@ use wayfix_scene_sim::random::RandomStreams;
 
 use wayfix_evaluation::{
     errors::proportion_interval,
-    plot::{LinesPlot, PlotError, PlotSeries},
+    plot::{LinePlot, PlotError, PlotSeries},
     report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
@@ -161,7 +161,7 @@ impl ConvergenceCount {
         })
     }
 
-    fn plot(&self) -> LinesPlot {
+    fn plot(&self) -> LinePlot {
         let n_frames = self.trials.iter().map(|trial| trial.errors.len()).max().unwrap_or(0);
         let quantile = |share: f64| {
             let at = |frame: usize| {
@@ -173,7 +173,7 @@ impl ConvergenceCount {
             };
             (0..n_frames).map(at).collect()
         };
-        LinesPlot {
+        LinePlot {
             title: if self.kidnapped {
                 "Carried away at frame 40"
             } else {
@@ -187,7 +187,7 @@ impl ConvergenceCount {
                 PlotSeries::new("90 % of the runs are below", quantile(0.9)),
                 PlotSeries::new("95 %", quantile(0.95)),
             ],
-            ..LinesPlot::default()
+            ..LinePlot::default()
         }
     }
 }

@@ -6,7 +6,7 @@ use wayfix_color_model::LightingBank;
 use wayfix_sensor_log::{Record, RecordData};
 
 use wayfix_evaluation::{
-    plot::{AxisScale, LinesPlot, PlotSeries, statistics::median},
+    plot::{AxisScale, LinePlot, PlotSeries, statistics::median},
     report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorSystemParams, run};
@@ -44,14 +44,14 @@ pub fn frame_time(
         .map(|(n, ms)| Metric::new(format!("frame_median_ms_{n}"), *ms, "ms"))
         .chain(points.iter().map(|(n, ms)| Metric::new(format!("us_per_particle_{n}"), 1e3 * ms / n, "µs")))
         .collect();
-    let plot = LinesPlot {
+    let plot = LinePlot {
         title: "Computing time of a frame".to_owned(),
         x_label: "particles".to_owned(),
         y_label: "ms".to_owned(),
         series: vec![PlotSeries::new("median of 40 frames", points)],
         x_scale: AxisScale::Log10,
         y_scale: AxisScale::Log10,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     Ok(ReportRun { timings, figures: vec![plot.draw()?], ..ReportRun::default() })
 }

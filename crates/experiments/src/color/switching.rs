@@ -11,7 +11,7 @@ use wayfix_kalman::JumpMarkovFilterParams;
 use wayfix_sensor_log::{DecodedImage, Record, RecordData, Stamp};
 
 use wayfix_evaluation::{
-    plot::{LinesPlot, PlotSeries},
+    plot::{LinePlot, PlotSeries},
     report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
@@ -85,8 +85,8 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::from(n)
 }
 
-fn plot(title: &str, curves: &[(&str, Curve)]) -> LinesPlot {
-    LinesPlot {
+fn plot(title: &str, curves: &[(&str, Curve)]) -> LinePlot {
+    LinePlot {
         title: title.to_owned(),
         x_label: "frame".to_owned(),
         y_label: "classification rate".to_owned(),
@@ -94,7 +94,7 @@ fn plot(title: &str, curves: &[(&str, Curve)]) -> LinesPlot {
             .iter()
             .map(|(name, curve)| PlotSeries::new(name.replace('_', " "), curve.clone()))
             .collect(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }
 

@@ -5,7 +5,7 @@ use wayfix_slam_ekf::{
     EkfSlam, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
 };
 
-use super::{CorridorLaps, FilterKind};
+use super::{ComparedFilter, CorridorLaps};
 use crate::monobot::plain_filter;
 use wayfix_evaluation::errors::TrajectorySample;
 
@@ -25,7 +25,11 @@ pub struct ConsistencySample {
 /// Runs a simulated log through one filter from the true start: one entry per scan, from the first one after a motion.
 /// # Errors
 /// Returns an error if the log has no true start, or the filter refuses a simulated measurement.
-pub fn drive(laps: &CorridorLaps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
+pub fn drive(
+    laps: &CorridorLaps,
+    records: &[Record],
+    kind: ComparedFilter,
+) -> Result<Vec<ConsistencySample>> {
     let mut slam = filter(laps, records, kind)?;
     let start_stamp = records.first().context("an empty log")?.stamp;
     let motion = laps.motion();
@@ -54,14 +58,18 @@ pub fn drive(laps: &CorridorLaps, records: &[Record], kind: FilterKind) -> Resul
     Ok(samples)
 }
 
-fn filter(laps: &CorridorLaps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<RangeBearingSensor>> {
+fn filter(
+    laps: &CorridorLaps,
+    records: &[Record],
+    kind: ComparedFilter,
+) -> Result<EkfSlam<RangeBearingSensor>> {
     let start = records.iter().find_map(|record| match record.data {
         RecordData::TruePose(pose) => Some(pose),
         _ => None,
     });
     let params = SlamParams { linearization_point: kind.linearization(), ..plain_filter() };
     let mut slam = EkfSlam::new(laps.sensor(), params, start.context("a log without truth")?)?;
-    if kind == FilterKind::Anchored {
+    if kind == ComparedFilter::Anchored {
         for record in records {
             match &record.data {
                 RecordData::TrueLandmark(landmark) if landmark.id.is_multiple_of(laps.anchor_every) => {
@@ -87,7 +95,7 @@ fn observations(detections: &[Detection]) -> Vec<Observation<RangeBearing>> {
 
 fn consistency_sample(
     slam: &EkfSlam<RangeBearingSensor>,
-    kind: FilterKind,
+    kind: ComparedFilter,
     truth: Pose2<f64>,
     seconds: f64,
 ) -> ConsistencySample {

@@ -1,14 +1,14 @@
 use anyhow::{Result, ensure};
 use wayfix_gaussian_core::ChiSquaredBand;
 
-use super::{ConsistencySample, CorridorLaps, FilterKind, drive};
+use super::{ComparedFilter, ConsistencySample, CorridorLaps, drive};
 use wayfix_evaluation::report::Metric;
 
 /// Results of one filter over all logs, scan by scan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterMonteCarloResults {
     /// Which filter.
-    pub kind: FilterKind,
+    pub kind: ComparedFilter,
     /// Averages over the logs: of NEES and heading deviation the mean, of the position error the root mean square.
     pub samples: Vec<ConsistencySample>,
 }
@@ -16,7 +16,7 @@ pub struct FilterMonteCarloResults {
 /// All filters over the same logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConsistencyMonteCarlo {
-    /// One a filter, in the order of [`FilterKind::ALL`].
+    /// One a filter, in the order of [`ComparedFilter::ALL`].
     pub courses: Vec<FilterMonteCarloResults>,
     /// 95 % band of the average NEES of a consistent filter at any one scan.
     pub band: ChiSquaredBand,
@@ -49,13 +49,13 @@ pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<Consis
     for k in 0..n_runs {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k)); // no two of a call share one
         let records = laps.simulate(seed)?;
-        for (runs, kind) in runs.iter_mut().zip(FilterKind::ALL) {
+        for (runs, kind) in runs.iter_mut().zip(ComparedFilter::ALL) {
             runs.push(drive(laps, &records, kind)?);
         }
     }
     let courses: Vec<FilterMonteCarloResults> = runs
         .iter()
-        .zip(FilterKind::ALL)
+        .zip(ComparedFilter::ALL)
         .map(|(runs, kind)| FilterMonteCarloResults { kind, samples: average(runs) })
         .collect();
     let n_samples = courses.iter().map(|course| course.samples.len()).min().unwrap_or(0);
@@ -92,7 +92,7 @@ impl ConsistencyMonteCarlo {
 
     /// The heading σ is largest just before the first loop closure; this is the average that the filter states there.
     fn heading_sigma_at_closure(&self) -> f64 {
-        let invariant = self.courses.iter().filter(|course| course.kind == FilterKind::Invariant);
+        let invariant = self.courses.iter().filter(|course| course.kind == ComparedFilter::Invariant);
         invariant.flat_map(|course| &course.samples).map(|look| look.heading_sigma).fold(0.0, f64::max)
     }
 }
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(averages.len(), 1);
         assert_eq!((averages[0].nees, averages[0].position_error), (2.0, 12.5_f64.sqrt()));
         let course = FilterMonteCarloResults {
-            kind: FilterKind::Standard,
+            kind: ComparedFilter::Standard,
             samples: vec![look(1.0, 0.0), look(f64::NAN, 0.0)],
         };
         assert_eq!(course.share_outside(&ChiSquaredBand { low: 0.0, high: 2.0 }), 0.5);

@@ -4,7 +4,7 @@ use wayfix_slam_ekf::LinearizationPoint;
 
 /// The filters that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FilterKind {
+pub enum ComparedFilter {
     /// All derivatives at the newest estimate, with no reference to the world.
     Standard,
     /// The same, with some landmarks at known positions. [Andrade-Cetto 2005, Eq. 20]
@@ -15,7 +15,7 @@ pub enum FilterKind {
     Invariant,
 }
 
-impl FilterKind {
+impl ComparedFilter {
     /// All of them, in the order of the report.
     pub const ALL: [Self; 4] = [Self::Standard, Self::Anchored, Self::FirstEstimates, Self::Invariant];
 
@@ -42,13 +42,13 @@ impl FilterKind {
     ///
     /// ```
     /// use wayfix_evaluation::errors::TrajectorySample;
-    /// use wayfix_experiments::consistency::FilterKind;
+    /// use wayfix_experiments::consistency::ComparedFilter;
     /// use nalgebra::Matrix3;
     /// use wayfix_estimation_traits::Pose2;
     /// let (estimate, truth) = (Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, 0.0, 0.2));
     /// let sample = TrajectorySample { estimate, covariance: Matrix3::identity(), truth };
-    /// assert!(FilterKind::Standard.error(&sample).y.abs() < 1e-12);
-    /// assert!((FilterKind::Invariant.error(&sample).y + 0.1).abs() < 1e-12); // half the turn, over one metre
+    /// assert!(ComparedFilter::Standard.error(&sample).y.abs() < 1e-12);
+    /// assert!((ComparedFilter::Invariant.error(&sample).y + 0.1).abs() < 1e-12); // half the turn, over one metre
     /// ```
     pub fn error(self, sample: &TrajectorySample) -> Vector3<f64> {
         match self {

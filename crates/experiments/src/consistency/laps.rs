@@ -9,11 +9,11 @@ use wayfix_scene_sim::{
     drive::WheeledRobotParams,
     random::RandomStreams,
     route::{RoundedRectangleRoute, RouteParams},
-    sensor::{GaussianOdometryParams, RangeBearingParams, range_bearing::RangeSigma},
+    sensor::{GaussianOdometryParams, RangeBearingParams, range_bearing::RangeDependentSigma},
     world::{CorridorLoop, WorldLayout},
 };
 use wayfix_sensor_log::Record;
-use wayfix_slam_ekf::{IncrementMotion, RangeBearingSensor};
+use wayfix_slam_ekf::{OdometryMotion, RangeBearingSensor};
 
 /// Laps of a corridor with landmarks on its walls, with exactly the noise that filters assume.
 ///
@@ -87,8 +87,8 @@ impl CorridorLaps {
     }
 
     /// Motion model with the simulated noise.
-    pub fn motion(&self) -> IncrementMotion {
-        IncrementMotion {
+    pub fn motion(&self) -> OdometryMotion {
+        OdometryMotion {
             translation_variance_per_meter: 0.0,
             heading_variance_per_meter: 0.0,
             heading_variance_per_radian: 0.0,
@@ -138,7 +138,7 @@ impl CorridorLaps {
             sensor: RangeBearingParams {
                 period_ms: PERIOD_MS,
                 max_range_m: self.max_range_m,
-                range_noise: RangeSigma { constant_m: self.range_sigma_m, per_meter: 0.0 },
+                range_noise: RangeDependentSigma { constant_m: self.range_sigma_m, per_meter: 0.0 },
                 bearing_sigma_rad: self.bearing_sigma_rad,
                 ..RangeBearingParams::default()
             },

@@ -10,6 +10,6 @@ mod plots;
 
 pub use drive::{ConsistencySample, drive};
 pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo};
-pub use filter_kind::FilterKind;
+pub use filter_kind::ComparedFilter;
 pub use laps::CorridorLaps;
 pub use plots::picture;

@@ -6,7 +6,7 @@ use super::{
     localize::LocalizationRun,
     traverses::{Frame, Traverses},
 };
-use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinesPlot, PlotSeries, SvgPlot};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 use wayfix_systems::views::{DescriptorKind, shade};
 
 /// Pixels a frame and a place of a belief map.
@@ -53,17 +53,17 @@ fn belief_map(beliefs: &[Vec<f64>]) -> ((u32, u32), Vec<u8>) {
     ((width as u32, height as u32), (0..width * height).flat_map(pixel).collect())
 }
 
-fn errors(variants: &[(DescriptorKind, Variants)]) -> LinesPlot {
+fn errors(variants: &[(DescriptorKind, Variants)]) -> LinePlot {
     let series = |(kind, variants): &(DescriptorKind, Variants)| {
         let points = variants.filtered.errors().enumerate().map(|(frame, off)| (frame as f64, off as f64));
         PlotSeries::new(kind.title(), points.collect())
     };
-    LinesPlot {
+    LinePlot {
         title: "How far off the best place is".to_owned(),
         x_label: "frame".to_owned(),
         y_label: "places".to_owned(),
         series: variants.iter().map(series).collect(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }
 

@@ -5,7 +5,7 @@ use wayfix_sensor_log::Stamp;
 use wayfix_visual_tracking::RgbImage;
 
 use super::{
-    FilmScore,
+    FilmTrackingScore,
     score::{bounds, mask},
 };
 use wayfix_systems::{
@@ -23,14 +23,14 @@ pub fn follow(
     methods: &[TrackingMethod],
     params: &TrackParams,
     mut observe: impl FnMut(&TrackFrameResult) -> Result<()>,
-) -> Result<Vec<FilmScore>> {
+) -> Result<Vec<FilmTrackingScore>> {
     let mut frames = film.frames()?;
     let first = frames.next().context("a film without frames")?;
     let (picture, start) = (pixels(&first)?, TargetStart::Mask(mask(&first.target)?));
     let begin = |method: &TrackingMethod| method.begin(params, &picture, &start);
     let mut trackers = methods.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
     let mut rngs = vec![ChaCha8Rng::seed_from_u64(film.seed); methods.len()];
-    let mut scores = vec![FilmScore::default(); methods.len()];
+    let mut scores = vec![FilmTrackingScore::default(); methods.len()];
     for (index, frame) in (1..).zip(frames) {
         let picture = pixels(&frame)?;
         for (k, tracker) in trackers.iter_mut().enumerate() {

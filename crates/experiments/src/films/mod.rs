@@ -5,5 +5,5 @@ mod score;
 mod table;
 
 pub use follow::follow;
-pub use score::FilmScore;
+pub use score::FilmTrackingScore;
 pub use table::table;

@@ -1,8 +1,8 @@
 use anyhow::{Context, Result};
 use wayfix_scene_sim::film::{FilmFrame, Silhouette};
-use wayfix_visual_tracking::{BitMask, BoundingBox, TargetEstimate, TrackStatus};
+use wayfix_visual_tracking::{BoundingBox, PixelMask, TargetEstimate, TrackStatus};
 
-use wayfix_systems::track::StatusScore;
+use wayfix_systems::track::LostStatusScore;
 
 /// Overlap of an outline from which on it is right. [Everingham et al. 2010, for detections]
 const RIGHT: f64 = 0.5;
@@ -15,7 +15,7 @@ const MIN_DISTRACTOR_PX: usize = 100;
 ///
 /// An outline is scored by its pixels and the whole target, hidden parts included; a target without an outline by its box and the true one.
 #[derive(Clone, Debug, Default)]
-pub struct FilmScore {
+pub struct FilmTrackingScore {
     /// Overlap of each frame with a visible target; 0 if the tracker reports it lost.
     pub iou: Vec<f64>,
     /// Distance of the centres in pixels, in frames not reported lost.
@@ -26,7 +26,7 @@ pub struct FilmScore {
     /// Share of the neck that is inside the outline, of the frames with enough of a neck.
     pub distractor_share: Vec<f64>,
     /// Error rates of the lost status.
-    pub status: StatusScore,
+    pub status: LostStatusScore,
     /// Number of frames with a visible target reported lost.
     pub n_lost: usize,
     /// Number of frames without a visible target.
@@ -35,7 +35,7 @@ pub struct FilmScore {
     pub n_hidden_and_lost: usize,
 }
 
-impl FilmScore {
+impl FilmTrackingScore {
     /// Takes the next frame in.
     ///
     /// # Errors
@@ -90,9 +90,9 @@ pub(super) fn mean(values: &[f64]) -> f64 {
 }
 
 /// A silhouette as the library's mask.
-pub(super) fn mask(silhouette: &Silhouette) -> Result<BitMask> {
+pub(super) fn mask(silhouette: &Silhouette) -> Result<PixelMask> {
     let (width, pixels) = (silhouette.width(), silhouette.pixels());
-    Ok(BitMask::from_fn(width, silhouette.height(), |u, v| pixels[v * width + u])?)
+    Ok(PixelMask::from_fn(width, silhouette.height(), |u, v| pixels[v * width + u])?)
 }
 
 /// The true box.
@@ -101,8 +101,8 @@ pub(super) fn bounds(silhouette: &Silhouette) -> Result<BoundingBox> {
     Ok(BoundingBox::from_corner(x, y, width, height)?)
 }
 
-fn inside(target: &TargetEstimate, like: &Silhouette) -> Result<BitMask> {
-    Ok(BitMask::from_polygon(like.width(), like.height(), &target.outline)?)
+fn inside(target: &TargetEstimate, like: &Silhouette) -> Result<PixelMask> {
+    Ok(PixelMask::from_polygon(like.width(), like.height(), &target.outline)?)
 }
 
 fn apart(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {

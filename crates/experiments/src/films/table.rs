@@ -4,12 +4,12 @@ use anyhow::Result;
 use rayon::prelude::*;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 
-use super::{FilmScore, follow, score::mean};
+use super::{FilmTrackingScore, follow, score::mean};
 use wayfix_evaluation::{
     errors::MeanInterval,
     report::{ConfidenceInterval, Metric, ReportRun},
 };
-use wayfix_systems::track::{RunHistory, StatusScore, TrackParams, TrackingMethod, plots};
+use wayfix_systems::track::{LostStatusScore, TrackParams, TrackRunHistory, TrackingMethod, plots};
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
 const N_END: usize = 20;
@@ -26,8 +26,8 @@ pub fn table(
     params: &TrackParams,
 ) -> Result<ReportRun> {
     let shown = seeds.start;
-    let one = |seed: u64| -> Result<(Vec<FilmScore>, RunHistory, Vec<Duration>)> {
-        let (mut run_history, mut steps) = (RunHistory::default(), Vec::new());
+    let one = |seed: u64| -> Result<(Vec<FilmTrackingScore>, TrackRunHistory, Vec<Duration>)> {
+        let (mut run_history, mut steps) = (TrackRunHistory::default(), Vec::new());
         let scores = follow(&SyntheticFilm { seed, ..*film }, methods, params, |frame| {
             steps.push(frame.step);
             if seed == shown { Ok(run_history.observe(frame)?) } else { Ok(()) }
@@ -37,7 +37,7 @@ pub fn table(
     let runs = seeds.into_par_iter().map(one).collect::<Result<Vec<_>>>()?;
     let mut metrics = Vec::new();
     for (k, method) in methods.iter().enumerate() {
-        let scores: Vec<&FilmScore> = runs.iter().map(|(scores, ..)| &scores[k]).collect();
+        let scores: Vec<&FilmTrackingScore> = runs.iter().map(|(scores, ..)| &scores[k]).collect();
         let prefix = method.name().replace('-', "_");
         let named = |metric: Metric| Metric { name: format!("{prefix}_{}", metric.name), ..metric };
         metrics.extend(over_seeds(&scores, film.occlusion).into_iter().map(named));
@@ -52,12 +52,14 @@ pub fn table(
     Ok(ReportRun { metrics, timings, figures, notes, ..ReportRun::default() })
 }
 
-fn over_seeds(scores: &[&FilmScore], incident: OcclusionEvent) -> Vec<Metric> {
-    let all = |values: fn(&FilmScore) -> &Vec<f64>| -> Vec<f64> {
+fn over_seeds(scores: &[&FilmTrackingScore], incident: OcclusionEvent) -> Vec<Metric> {
+    let all = |values: fn(&FilmTrackingScore) -> &Vec<f64>| -> Vec<f64> {
         scores.iter().flat_map(|score| values(score)).copied().collect()
     };
     let ious: Vec<f64> = scores.iter().map(|score| mean(&score.iou)).collect();
-    let sum = |count: fn(&FilmScore) -> usize| scores.iter().map(|score| count(score)).sum::<usize>() as f64;
+    let sum = |count: fn(&FilmTrackingScore) -> usize| {
+        scores.iter().map(|score| count(score)).sum::<usize>() as f64
+    };
     let spread = MeanInterval::of(&ious)
         .map(|MeanInterval { half_width, n, .. }| ConfidenceInterval { half_width, n });
     let mut metrics = vec![
@@ -65,7 +67,7 @@ fn over_seeds(scores: &[&FilmScore], incident: OcclusionEvent) -> Vec<Metric> {
         Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
         Metric::new("n_frames_lost", sum(|score| score.n_lost), ""),
     ];
-    let mut status = StatusScore::default();
+    let mut status = LostStatusScore::default();
     scores.iter().for_each(|score| status.merge(&score.status));
     metrics.push(Metric::new("false_tracked_share", status.false_tracked_share(), ""));
     metrics.push(Metric::new("false_lost_share", status.false_lost_share(), ""));

@@ -2,8 +2,8 @@ use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
-    observability::ObservabilityRecorder,
+    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, MonobotMotion, MonobotSensor, Observation,
+    SlamParams, observability::ObservabilityRecorder,
 };
 
 use super::{FixedPositionSensor, WorldReference};
@@ -45,7 +45,8 @@ const SMALLEST_SIGMA: f64 = 1e-6;
 
 /// The plain Kalman filter: every landmark is used at once, without gating.
 pub(crate) fn plain_filter() -> SlamParams {
-    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
+    let confirmation =
+        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
     SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
 }
 

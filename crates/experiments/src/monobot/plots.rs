@@ -1,5 +1,5 @@
 use super::{MonobotDrive, MonobotStep, first_entry};
-use wayfix_evaluation::plot::{LinesPlot, PlotError, PlotSeries, SvgPlot};
+use wayfix_evaluation::plot::{LinePlot, PlotError, PlotSeries, SvgPlot};
 
 /// The four columns of [Andrade-Cetto 2005, Figs. 4-6] for one drive: places, robot error, landmark error, gains.
 ///
@@ -9,12 +9,12 @@ pub fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
     let line = |value: &dyn Fn(&MonobotStep) -> f64| -> Vec<(f64, f64)> {
         drive.steps.iter().enumerate().map(|(k, step)| (k as f64, value(step))).collect()
     };
-    let plot = |title: &str, y_label: &str, series: Vec<PlotSeries>| LinesPlot {
+    let plot = |title: &str, y_label: &str, series: Vec<PlotSeries>| LinePlot {
         title: title.to_owned(),
         x_label: "step".to_owned(),
         y_label: y_label.to_owned(),
         series,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     let with_bounds = |error: &dyn Fn(&MonobotStep) -> f64, sigma: &dyn Fn(&MonobotStep) -> f64| {
         vec![
@@ -42,7 +42,7 @@ pub fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
         plot("Kalman gains", "", gains),
     ]
     .iter()
-    .map(LinesPlot::draw)
+    .map(LinePlot::draw)
     .collect()
 }
 
@@ -56,12 +56,12 @@ pub fn fisher_plot(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<SvgPlo
             first_entry(*n, n_steps)?.into_iter().enumerate().map(|(k, entry)| (k as f64 + 1.0, entry));
         Ok(PlotSeries::new(format!("{n} landmarks"), points.collect()))
     };
-    let plot = LinesPlot {
+    let plot = LinePlot {
         title: "First entry of the total Fisher information".to_owned(),
         x_label: "step".to_owned(),
         y_label: "1/m²".to_owned(),
         series: n_landmarks.iter().map(series).collect::<anyhow::Result<_>>()?,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     Ok(plot.draw()?)
 }

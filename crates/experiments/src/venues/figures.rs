@@ -3,7 +3,7 @@ use wayfix_color_model::ColorDensity;
 use super::{methods::Method, score::VenueScore, venue::Venue};
 use wayfix_evaluation::{
     errors::MeanInterval,
-    plot::{EllipsesPlot, LinesPlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
+    plot::{EllipsesPlot, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
     report::Metric,
 };
 
@@ -64,12 +64,12 @@ pub(super) fn plots(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<SvgPl
             scores.iter().enumerate().map(|(venue, score)| (venue as f64 + 1.0, score.rates[k].balanced()));
         PlotSeries::new(method.title(), points.collect())
     });
-    let rates = LinesPlot {
+    let rates = LinePlot {
         title: "Ball and carpet told apart in a venue left out".to_owned(),
         x_label: "venue, in the order of the ellipses' legend".to_owned(),
         y_label: "share of pixels".to_owned(),
         series: series.collect(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     };
     let carpets = |venue: &Venue| venue.images.first().map(|image| image.carpet.density);
     let colors = EllipsesPlot {

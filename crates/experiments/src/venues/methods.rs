@@ -1,7 +1,7 @@
 use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{ColorDensity, ColorMeans, LightingFilter, LightingParams, LightingPriors};
+use wayfix_color_model::{ColorDensity, ColorMeans, LightingFilter, LightingFilterParams, LightingPriors};
 
 use super::image::VenueImage;
 use super::prior::{BALL, CARPET, TrainingStatistics, block};
@@ -91,10 +91,10 @@ fn filter(
     priors: &LightingPriors,
     carpet: &Vector3<f64>,
 ) -> Result<LightingFilter> {
-    let params = LightingParams {
+    let params = LightingFilterParams {
         pixel_color_variance: experience.priors.pixel_color_variance(),
         mean_color_variance: experience.priors.mean_color_variance(),
-        ..LightingParams::default()
+        ..LightingFilterParams::default()
     };
     let prior = priors.members().first().context("no prior")?;
     let mut light = LightingFilter::new(prior.clone(), params)?;

@@ -15,10 +15,10 @@ use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedForm, LinearMotion, LinearSensor, ModelBank};
+/// use wayfix_kalman::{ExtendedForm, LinearMotion, LinearSensor, FilterBank};
 /// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
 /// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
-/// let mut bank = ModelBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let mut bank = FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
 /// bank.predict(&None)?;
 /// let candidates = bank.candidates(&sensor, &Vector1::new(150.0))?;
@@ -30,7 +30,7 @@ use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct ModelBank<M: MotionModel, F: FilterForm<M::State>>
+pub struct FilterBank<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -50,7 +50,7 @@ pub struct ModelUpdate<I, B> {
     pub belief: B,
 }
 
-impl<M: MotionModel, F: FilterForm<M::State>> ModelBank<M, F>
+impl<M: MotionModel, F: FilterForm<M::State>> FilterBank<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

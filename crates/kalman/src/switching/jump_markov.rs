@@ -2,10 +2,10 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::Gaussian;
 
-use super::{MarkovChain, ModelBank, hypotheses::normalized};
+use super::{FilterBank, MarkovChain, hypotheses::normalized};
 use crate::{FilterForm, KalmanError, check, error::Checked};
 
-/// Jump-Markov model selection: a [`ModelBank`] whose active filter follows a Markov chain.
+/// Jump-Markov model selection: a [`FilterBank`] whose active filter follows a Markov chain.
 ///
 /// The posterior over which filter was active when is kept as its most probable histories, each with its own bank; every measurement
 /// extends each history by every model and the best [`n_histories`](JumpMarkovFilterParams::n_histories) survive. With one history it selects
@@ -16,10 +16,10 @@ use crate::{FilterForm, KalmanError, check, error::Checked};
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedForm, JumpMarkovFilter, JumpMarkovFilterParams, LinearMotion, LinearSensor, MarkovChain, ModelBank};
+/// use wayfix_kalman::{ExtendedForm, JumpMarkovFilter, JumpMarkovFilterParams, LinearMotion, LinearSensor, MarkovChain, FilterBank};
 /// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
 /// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
-/// let bank = ModelBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let bank = FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
 /// let mut light = JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95)?, JumpMarkovFilterParams::default())?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
 /// for seen in [Some(152.0), Some(149.0), None, Some(38.0)] {
@@ -62,7 +62,7 @@ struct History<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
-    bank: ModelBank<M, F>,
+    bank: FilterBank<M, F>,
     /// Which model is active now: certain just after a measurement, then spread by the chain.
     active: Vec<f64>,
     path: Vec<usize>,
@@ -86,7 +86,7 @@ where
     /// # Errors
     /// Returns an error if the chain is for another number of models, or `n_histories` is 0.
     pub fn new(
-        bank: ModelBank<M, F>,
+        bank: FilterBank<M, F>,
         chain: MarkovChain,
         params: JumpMarkovFilterParams,
     ) -> Result<Self, KalmanError> {
@@ -174,7 +174,7 @@ where
     }
 
     /// The bank of the most probable history: the belief of every filter, active or not.
-    pub fn bank(&self) -> &ModelBank<M, F> {
+    pub fn bank(&self) -> &FilterBank<M, F> {
         &self.histories.first().expect("invariant: there is a history").bank
     }
 

@@ -10,7 +10,7 @@ use super::pieces::{Piece, split};
 use super::points::Points;
 use super::{BeamCounts, LineExtraction, LineExtractionParams, Scan, WallSegment};
 use crate::LineExtractionError;
-use crate::simplify::ChainSimplifier;
+use crate::simplify::PolylineSimplifier;
 
 /// The walls in one scan; [`LineExtractor`] does the same for many, faster.
 ///
@@ -56,7 +56,7 @@ pub struct LineExtractor {
     params: LineExtractionParams,
     points: Points,
     surfaces: Vec<Range<usize>>,
-    simplifier: ChainSimplifier,
+    simplifier: PolylineSimplifier,
     corners: Vec<usize>,
     pieces: Vec<Piece>,
 }
@@ -70,7 +70,7 @@ impl LineExtractor {
             params,
             points: Points::default(),
             surfaces: Vec::new(),
-            simplifier: ChainSimplifier::default(),
+            simplifier: PolylineSimplifier::default(),
             corners: Vec::new(),
             pieces: Vec::new(),
         })

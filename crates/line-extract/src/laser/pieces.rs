@@ -8,7 +8,7 @@ use super::curvature_test::CurvatureTest;
 use super::points::Points;
 use super::{LineExtractionParams, SplitMethod};
 use crate::line::Moments;
-use crate::simplify::{ChainSimplifier, first_max};
+use crate::simplify::{PolylineSimplifier, first_max};
 use crate::{LineEstimate, LineExtractionError};
 
 /// A straight piece while it may still grow.
@@ -26,7 +26,7 @@ pub(super) struct Piece {
 pub(super) fn split(
     surface: &[Vector2<f64>],
     params: &LineExtractionParams,
-    simplifier: &mut ChainSimplifier,
+    simplifier: &mut PolylineSimplifier,
     corners: &mut Vec<usize>,
 ) -> Result<(), LineExtractionError> {
     match params.split_method {

@@ -11,6 +11,6 @@ mod simplifier;
 mod split;
 
 pub use classic::{PointDistance, douglas_peucker};
-pub use simplifier::{ChainSimplifier, simplify};
+pub use simplifier::{PolylineSimplifier, simplify};
 
 pub(crate) use split::first_max;

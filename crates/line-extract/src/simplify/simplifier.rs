@@ -37,7 +37,7 @@ const EXACT_COMPARISON_COST: usize = 100;
 /// 1e150.
 pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, LineExtractionError> {
     let mut kept = Vec::new();
-    ChainSimplifier::default().simplify_into(points, epsilon, &mut kept)?;
+    PolylineSimplifier::default().simplify_into(points, epsilon, &mut kept)?;
     Ok(kept)
 }
 
@@ -45,9 +45,9 @@ pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, Lin
 ///
 /// ```
 /// use nalgebra::Vector2;
-/// use wayfix_line_extract::ChainSimplifier;
+/// use wayfix_line_extract::PolylineSimplifier;
 ///
-/// let mut simplifier = ChainSimplifier::default();
+/// let mut simplifier = PolylineSimplifier::default();
 /// let mut kept = Vec::new();
 /// for height in [0.1, 0.0] {
 ///     let chain = [Vector2::new(0.0, 0.0), Vector2::new(1.0, height), Vector2::new(2.0, 0.0)];
@@ -57,19 +57,19 @@ pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, Lin
 /// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct ChainSimplifier {
+pub struct PolylineSimplifier {
     scan_budget: usize,
     ends: Vec<usize>,
     scanner: Scanner,
 }
 
-impl Default for ChainSimplifier {
+impl Default for PolylineSimplifier {
     fn default() -> Self {
         Self { scan_budget: SCAN_BUDGET, ends: Vec::new(), scanner: Scanner::default() }
     }
 }
 
-impl ChainSimplifier {
+impl PolylineSimplifier {
     /// Asks the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
     pub fn hull_tree_only() -> Self {
         Self { scan_budget: 0, ..Self::default() }

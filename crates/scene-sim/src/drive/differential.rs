@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 
 use super::WheeledRobotParams;
-use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, plane};
 
 /// Two driven wheels on one axle: motors that lag, wheels that slip and are not as built.
@@ -26,8 +26,8 @@ pub struct DifferentialDrive {
     wheel_rates: [f64; 2],
     /// Angle of each wheel since the start, rad.
     wheel_angles: [f64; 2],
-    common_slip: GaussMarkov,
-    own_slips: [GaussMarkov; 2],
+    common_slip: GaussMarkovProcess,
+    own_slips: [GaussMarkovProcess; 2],
 }
 
 impl DifferentialDrive {
@@ -37,7 +37,7 @@ impl DifferentialDrive {
     /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
     pub fn new(params: WheeledRobotParams, start: Pose2<f64>) -> Result<Self, SimulationError> {
         params.validate()?;
-        let slip = GaussMarkov::new(params.slip.correlation_time_s);
+        let slip = GaussMarkovProcess::new(params.slip.correlation_time_s);
         Ok(Self {
             params,
             pose: start,

@@ -2,7 +2,7 @@ use rand::Rng;
 
 use super::light::LightKind;
 use crate::random::deviate::{below, chance, normal, uniform};
-use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, check};
 
 /// Ambient light, so that nothing is completely black.
@@ -52,7 +52,7 @@ pub(super) struct AmbientLight {
     pub(super) curtains: Vec<f64>,
     /// Brightness of the day, 1 for a typical day.
     pub(super) daylight: f64,
-    clouds: GaussMarkov,
+    clouds: GaussMarkovProcess,
 }
 
 impl AmbientLight {
@@ -64,7 +64,7 @@ impl AmbientLight {
     ) -> Self {
         let rng = streams.of(RandomStreamPurpose::Lamps);
         let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * normal(rng)));
-        let clouds = GaussMarkov::new(params.daylight_correlation_s);
+        let clouds = GaussMarkovProcess::new(params.daylight_correlation_s);
         let mut ambient_light =
             Self { params, lamps: lamps.collect(), clouds, ..Self::nominal(0, n_curtains) };
         ambient_light.advance(1.0, streams);
@@ -79,7 +79,7 @@ impl AmbientLight {
             lamps: vec![1.0; n_lamps],
             curtains: vec![1.0; n_curtains],
             daylight: 1.0,
-            clouds: GaussMarkov::new(1.0),
+            clouds: GaussMarkovProcess::new(1.0),
         }
     }
 

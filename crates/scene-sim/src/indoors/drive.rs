@@ -10,7 +10,7 @@ use crate::drive::{DifferentialDrive, PurePursuit};
 use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::route::Route;
 use crate::scenery::RgbPicture;
-use crate::sensor::{Sensor, TrueState, WheelOdometry};
+use crate::sensor::{SimulatedSensor, TrueState, WheelOdometry};
 use crate::{SimulationError, check};
 
 /// Time between two steps of the integration, milliseconds.
@@ -18,7 +18,7 @@ const STEP_MS: u64 = 10;
 
 /// One view with its truth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct IndoorStep {
+pub struct IndoorDriveStep {
     /// Since the start.
     pub milliseconds: u64,
     /// Odometry since the last view, in the robot frame before; `None` at the first.
@@ -98,7 +98,7 @@ impl<'a> IndoorDrive<'a> {
         self.milliseconds += STEP_MS;
     }
 
-    fn step(&mut self) -> IndoorStep {
+    fn step(&mut self) -> IndoorDriveStep {
         let pose = self.robot.pose();
         let moment = TrueState {
             milliseconds: self.milliseconds,
@@ -113,14 +113,14 @@ impl<'a> IndoorDrive<'a> {
         let people: Vec<_> = self.crowd.standing(&self.building.aisles, pose.translation).collect();
         let rng = self.streams.of(RandomStreamPurpose::Picture);
         let view = self.view_renderer.render_view(self.building, &self.ambient_light, &people, &pose, rng);
-        IndoorStep { milliseconds: self.milliseconds, odometry, pose, view }
+        IndoorDriveStep { milliseconds: self.milliseconds, odometry, pose, view }
     }
 }
 
 impl Iterator for IndoorDrive<'_> {
-    type Item = IndoorStep;
+    type Item = IndoorDriveStep;
 
-    fn next(&mut self) -> Option<IndoorStep> {
+    fn next(&mut self) -> Option<IndoorDriveStep> {
         self.n_left = self.n_left.checked_sub(1)?;
         let step = self.step();
         let period_ms = u64::from(self.params.view_period_ms);

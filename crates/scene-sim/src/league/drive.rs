@@ -9,7 +9,7 @@ use super::{
 };
 use crate::SimulationError;
 use crate::random::deviate::uniform;
-use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 
 /// One frame with its truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub struct LeagueDrive {
     robot: LeggedRobot,
     camera_simulator: CameraSimulator,
     /// Of red and of blue.
-    balance: [GaussMarkov; 2],
+    balance: [GaussMarkovProcess; 2],
     milliseconds: u64,
     n_taken: usize,
 }
@@ -85,7 +85,7 @@ impl LeagueDrive {
         params.validate(&venue.camera)?;
         let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;
         let camera_simulator = CameraSimulator::new(venue.camera)?;
-        let drift = GaussMarkov::new(venue.camera.white_balance_correlation_s);
+        let drift = GaussMarkovProcess::new(venue.camera.white_balance_correlation_s);
         Ok(Self {
             map: SceneSurface::of_map(&field_map()?),
             things: UnmappedObjects::draw(streams.of(RandomStreamPurpose::UnmappedObjects)),

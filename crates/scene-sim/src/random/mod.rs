@@ -5,6 +5,6 @@ mod gauss_markov;
 mod noise_shape;
 mod streams;
 
-pub use gauss_markov::GaussMarkov;
+pub use gauss_markov::GaussMarkovProcess;
 pub use noise_shape::NoiseShape;
 pub use streams::{RandomStreamPurpose, RandomStreams};

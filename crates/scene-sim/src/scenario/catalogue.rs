@@ -6,9 +6,9 @@ use crate::drive::{SlipParams, WheeledRobotParams};
 use crate::monobot::MonobotParams;
 use crate::random::NoiseShape;
 use crate::route::{CircleRoute, RoundedRectangleRoute, RouteParams, WaypointRoute};
-use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
+use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma};
 use crate::sensor::{GaussianOdometryParams, OdometryKind, RangeBearingParams, WheelOdometryParams};
-use crate::world::{CorridorLoop, Roadside, UniformField, WorldLayout};
+use crate::world::{CorridorLoop, RoadsideLandmarks, UniformLandmarkField, WorldLayout};
 
 pub(super) fn all() -> Vec<Scenario> {
     let planar =
@@ -27,7 +27,7 @@ pub(super) fn all() -> Vec<Scenario> {
 /// Two laps of a circle with exactly the noise that filters assume, about 500 steps of 0.25 m as in the shared range-bearing logs.
 fn loop_known() -> PlanarParams {
     PlanarParams {
-        layout: WorldLayout::UniformField(UniformField {
+        layout: WorldLayout::UniformField(UniformLandmarkField {
             n_landmarks: 60,
             half_width_m: 16.0,
             separation_m: 1.0,
@@ -56,7 +56,7 @@ fn office_velocity() -> PlanarParams {
         RouteParams::Waypoints(WaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
     };
     PlanarParams {
-        layout: WorldLayout::UniformField(UniformField {
+        layout: WorldLayout::UniformField(UniformLandmarkField {
             n_landmarks: 15,
             half_width_m: 3.0,
             separation_m: 0.8,
@@ -81,12 +81,12 @@ fn office_velocity() -> PlanarParams {
             min_range_m: 0.3,
             max_range_m: 5.0,
             field_of_view_rad: FRAC_PI_3,
-            range_noise: RangeSigma { constant_m: 0.01, per_meter: 0.02 },
+            range_noise: RangeDependentSigma { constant_m: 0.01, per_meter: 0.02 },
             bearing_sigma_rad: 0.01,
             noise_shape: NoiseShape::StudentT { degrees_of_freedom: 5.0 },
             range_bias_m: 0.02,
             drift: CorrelatedErrorParams {
-                range: RangeSigma { constant_m: 0.02, per_meter: 0.03 },
+                range: RangeDependentSigma { constant_m: 0.02, per_meter: 0.03 },
                 bearing_sigma_rad: 0.006,
                 correlation_time_s: 8.0,
             },
@@ -102,7 +102,7 @@ fn office_velocity() -> PlanarParams {
 /// Rocks along a road, every sin at once.
 fn rough_known() -> PlanarParams {
     PlanarParams {
-        layout: WorldLayout::Roadside(Roadside { n_landmarks: 50, clear_m: 1.0, verge_m: 4.0 }),
+        layout: WorldLayout::Roadside(RoadsideLandmarks { n_landmarks: 50, clear_m: 1.0, verge_m: 4.0 }),
         n_unknown_codes: 3,
         other_robots: vec![OtherRobotParams {
             id: 2,
@@ -131,14 +131,14 @@ fn rough_known() -> PlanarParams {
         sensor: RangeBearingParams {
             period_ms: 500,
             field_of_view_rad: 4.0 * FRAC_PI_3,
-            range_noise: RangeSigma { constant_m: 0.03, per_meter: 0.01 },
+            range_noise: RangeDependentSigma { constant_m: 0.03, per_meter: 0.01 },
             bearing_sigma_rad: 0.015,
             noise_shape: NoiseShape::Laplace,
             range_bias_m: 0.04,
             range_scale: 1.005,
             bearing_bias_rad: 0.01,
             drift: CorrelatedErrorParams {
-                range: RangeSigma { constant_m: 0.02, per_meter: 0.005 },
+                range: RangeDependentSigma { constant_m: 0.02, per_meter: 0.005 },
                 bearing_sigma_rad: 0.005,
                 correlation_time_s: 3.0,
             },

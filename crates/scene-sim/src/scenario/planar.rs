@@ -5,7 +5,7 @@ use crate::drive::WheeledRobotParams;
 use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
 use crate::route::RouteParams;
 use crate::sensor::{
-    GaussianOdometry, GaussianOdometryParams, RangeBearingDetector, RangeBearingParams, Sensor,
+    GaussianOdometry, GaussianOdometryParams, RangeBearingDetector, RangeBearingParams, SimulatedSensor,
     WheelOdometry, WheelOdometryParams,
 };
 use crate::world::{FloorPlan, OtherRobot, PlanarWorld, WorldLayout};
@@ -73,7 +73,7 @@ impl PlanarParams {
             truth_period_ms: self.truth_period_ms,
             ..Simulation::new(&world, route)
         };
-        let looks: Box<dyn Sensor> = Box::new(RangeBearingDetector::new(self.sensor)?);
+        let looks: Box<dyn SimulatedSensor> = Box::new(RangeBearingDetector::new(self.sensor)?);
         simulation.run(&mut [self.odometry.instrument()?, looks], streams)
     }
 
@@ -110,7 +110,7 @@ impl PlanarParams {
 }
 
 impl OdometryParams {
-    pub(super) fn instrument(&self) -> Result<Box<dyn Sensor>, SimulationError> {
+    pub(super) fn instrument(&self) -> Result<Box<dyn SimulatedSensor>, SimulationError> {
         Ok(match self {
             Self::Gaussian(params) => Box::new(GaussianOdometry::new(*params)?),
             Self::Wheels(params) => Box::new(WheelOdometry::new(*params)?),

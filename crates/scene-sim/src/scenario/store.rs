@@ -5,7 +5,7 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use super::{Scenario, ScenarioParams};
 use crate::SimulationError;
 use crate::indoors::{
-    IndoorDrive, IndoorParams, IndoorStep, RetailStore, RetailStoreParams, calibrated_robot,
+    IndoorDrive, IndoorDriveStep, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot,
 };
 use crate::random::RandomStreams;
 
@@ -56,7 +56,7 @@ impl RetailStoreLapsParams {
         Ok(records)
     }
 
-    fn records(&self, step: &IndoorStep) -> Result<Vec<Record>, SimulationError> {
+    fn records(&self, step: &IndoorDriveStep) -> Result<Vec<Record>, SimulationError> {
         let (width, height) = (step.view.width as u32, step.view.height as u32);
         let image = EncodedImage::jpeg(width, height, &step.view.rgb, self.jpeg_quality)?;
         let odometry = step.odometry.map(RecordData::OdometryIncrement);

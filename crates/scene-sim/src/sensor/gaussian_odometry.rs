@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::RecordData;
 
-use super::{Sensor, SensorReading, TrueState};
+use super::{SensorReading, SimulatedSensor, TrueState};
 use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
 use crate::{SimulationError, check, plane};
 
@@ -54,7 +54,7 @@ impl GaussianOdometry {
     }
 }
 
-impl Sensor for GaussianOdometry {
+impl SimulatedSensor for GaussianOdometry {
     fn period_ms(&self) -> u32 {
         self.params.period_ms
     }

@@ -37,7 +37,7 @@ pub struct SensorReading {
 ///
 /// **Laws**: equal histories and equal streams give equal readings; it draws from `streams` only, and a fixed number of draws for any input, so
 /// that two logs of one seed stay comparable.
-pub trait Sensor {
+pub trait SimulatedSensor {
     /// Period of the readings, at least 1 ms; the first comes at the start.
     fn period_ms(&self) -> u32;
 

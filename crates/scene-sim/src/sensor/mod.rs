@@ -7,7 +7,7 @@ pub mod range_bearing;
 mod wheel_odometry;
 
 pub use gaussian_odometry::{GaussianOdometry, GaussianOdometryParams};
-pub use instrument::{Sensor, SensorReading, TrueState};
+pub use instrument::{SensorReading, SimulatedSensor, TrueState};
 pub use laser::{Laser, LaserParams};
 pub use range_bearing::{RangeBearingDetector, RangeBearingParams};
 pub use wheel_odometry::{OdometryKind, WheelOdometry, WheelOdometryParams};

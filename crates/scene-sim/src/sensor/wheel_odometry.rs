@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{RecordData, Velocity};
 
-use super::{Sensor, SensorReading, TrueState};
+use super::{SensorReading, SimulatedSensor, TrueState};
 use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
 use crate::{SimulationError, check, plane};
 
@@ -88,7 +88,7 @@ impl WheelOdometry {
     }
 }
 
-impl Sensor for WheelOdometry {
+impl SimulatedSensor for WheelOdometry {
     fn period_ms(&self) -> u32 {
         self.params.period_ms
     }

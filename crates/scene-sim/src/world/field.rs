@@ -10,7 +10,7 @@ const ATTEMPTS: usize = 1000;
 
 /// Landmarks uniformly in a square about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UniformField {
+pub struct UniformLandmarkField {
     /// Number of landmarks.
     pub n_landmarks: usize,
     /// Half the side of the square, metres.
@@ -19,7 +19,7 @@ pub struct UniformField {
     pub separation_m: f64,
 }
 
-impl UniformField {
+impl UniformLandmarkField {
     /// Places the landmarks.
     ///
     /// # Errors
@@ -27,8 +27,8 @@ impl UniformField {
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    /// use wayfix_scene_sim::world::UniformField;
-    /// let field = UniformField { n_landmarks: 20, half_width_m: 5.0, separation_m: 1.0 };
+    /// use wayfix_scene_sim::world::UniformLandmarkField;
+    /// let field = UniformLandmarkField { n_landmarks: 20, half_width_m: 5.0, separation_m: 1.0 };
     /// let plan = field.plan(&mut ChaCha8Rng::seed_from_u64(1))?;
     /// assert_eq!(plan.landmarks.len(), 20);
     /// # Ok::<(), wayfix_scene_sim::SimulationError>(())

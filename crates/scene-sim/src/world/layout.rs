@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_sensor_log::TrueLandmark;
 
-use super::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField, Wall};
+use super::{CorridorLoop, Office, OfficeFloor, RoadsideLandmarks, UniformLandmarkField, Wall};
 use crate::SimulationError;
 use crate::route::Route;
 
@@ -31,7 +31,7 @@ impl FloorPlan {
 #[non_exhaustive]
 pub enum WorldLayout {
     /// Random landmarks in a square.
-    UniformField(UniformField),
+    UniformField(UniformLandmarkField),
     /// A corridor around a block.
     CorridorLoop(CorridorLoop),
     /// Rooms in rows and columns, with doors.
@@ -39,7 +39,7 @@ pub enum WorldLayout {
     /// A corridor around a block, with rooms, doors, pillars and furniture: walls only.
     OfficeFloor(OfficeFloor),
     /// Rocks along the robot's route.
-    Roadside(Roadside),
+    Roadside(RoadsideLandmarks),
 }
 
 impl WorldLayout {

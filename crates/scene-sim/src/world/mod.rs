@@ -10,10 +10,10 @@ mod roadside;
 mod wall;
 
 pub use corridor::CorridorLoop;
-pub use field::UniformField;
+pub use field::UniformLandmarkField;
 pub use layout::{FloorPlan, WorldLayout};
 pub use office::Office;
 pub use office_floor::OfficeFloor;
 pub use planar::{OtherRobot, PlanarWorld, SensorWorld};
-pub use roadside::Roadside;
+pub use roadside::RoadsideLandmarks;
 pub use wall::Wall;

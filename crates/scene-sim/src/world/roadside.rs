@@ -10,7 +10,7 @@ use crate::{SimulationError, check, plane};
 
 /// Rocks on both sides of whatever road the robot takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Roadside {
+pub struct RoadsideLandmarks {
     /// Number of rocks, at random places along the route.
     pub n_landmarks: usize,
     /// The least distance from the middle of the road, metres.
@@ -19,7 +19,7 @@ pub struct Roadside {
     pub verge_m: f64,
 }
 
-impl Roadside {
+impl RoadsideLandmarks {
     /// Places the rocks along `route`.
     ///
     /// # Errors

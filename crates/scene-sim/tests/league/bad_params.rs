@@ -1,7 +1,7 @@
 //! Parameters without a meaning are refused with their name and value; nothing panics.
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::league::{
@@ -44,7 +44,7 @@ fn cameras() {
     assert_refused(CameraParams { jpeg_quality: 0, ..honest() }.validate(), 0.0);
     assert_refused(CameraParams { jpeg_quality: 101, ..honest() }.validate(), 101.0);
     assert_refused(CameraParams { exposure_ms: 5000, ..honest() }.validate(), 5000.0);
-    let huge = Camera::new(16_384, 16_384, 1e3, 1e3, 0.0, 0.0).expect("allowed there");
+    let huge = PinholeCamera::new(16_384, 16_384, 1e3, 1e3, 0.0, 0.0).expect("allowed there");
     assert!(matches!(
         CameraSimulator::new(CameraParams { camera: huge, ..honest() }),
         Err(SimulationError::TooMany { .. })

@@ -1,6 +1,6 @@
 //! Labels against the map's own ray casting.
 
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector2};
 use wayfix_scene_sim::league::{
@@ -11,7 +11,7 @@ use wayfix_scene_sim::league::{
 use crate::support::{Blank, even_light, field_in, honest, looking, streams, take};
 
 /// What the map's own casts say at a point of the picture: 0 or the colour's number plus 1.
-fn cast(map: &wayfix_color_map::ColorMap, camera: &Camera, pose: &Pose3<f64>, at: Vector2<f64>) -> u8 {
+fn cast(map: &wayfix_color_map::ColorMap, camera: &PinholeCamera, pose: &Pose3<f64>, at: Vector2<f64>) -> u8 {
     let direction = pose.rotation * camera.ray(at.x, at.y);
     map.cast(&pose.translation, &direction).map_or(0, |hit| hit.color.0 + 1)
 }

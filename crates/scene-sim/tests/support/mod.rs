@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::Scenario;
 use wayfix_scene_sim::random::RandomStreams;
-use wayfix_scene_sim::sensor::{RangeBearingDetector, RangeBearingParams, Sensor, TrueState};
+use wayfix_scene_sim::sensor::{RangeBearingDetector, RangeBearingParams, SimulatedSensor, TrueState};
 use wayfix_scene_sim::world::{FloorPlan, PlanarWorld};
 use wayfix_sensor_log::{Detection, Record, RecordData, TrueLandmark};
 

@@ -5,7 +5,7 @@ use super::camera::{info_topic, is_rectified};
 use super::candidate::{Candidate, best};
 use super::kind::{BagRoute, Kind};
 use super::probe::{TopicProbe, topic_probes};
-use super::{Topic, TopicInfo, TopicUse};
+use super::{BagTopic, TopicInfo, TopicUse};
 use crate::LogError;
 
 /// The topics of a bag to read, and their kinds.
@@ -83,7 +83,7 @@ impl Choice {
     }
 
     /// Use of every topic of ROS 2 messages, for people.
-    pub(crate) fn uses(&self, topics: &[TopicInfo]) -> Vec<Topic> {
+    pub(crate) fn uses(&self, topics: &[TopicInfo]) -> Vec<BagTopic> {
         let describe = |(index, topic): (usize, &TopicInfo)| {
             let r#use = match Candidate::of((index, topic)) {
                 None if topic.n_messages == 0 => TopicUse::Empty,
@@ -94,7 +94,7 @@ impl Choice {
                 Some(Candidate { kind, .. }) => TopicUse::NotChosen(kind.name()),
             };
             let TopicInfo { name, schema, n_messages, .. } = topic.clone();
-            Topic { name, schema, n_messages, r#use }
+            BagTopic { name, schema, n_messages, r#use }
         };
         topics.iter().enumerate().filter(|(_, topic)| topic.is_cdr()).map(describe).collect()
     }

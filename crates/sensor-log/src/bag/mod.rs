@@ -16,4 +16,4 @@ pub(crate) use kind::BagRoute;
 pub(crate) use probe::TopicProbe;
 pub(crate) use records::BagRecords;
 pub(crate) use topic::TopicInfo;
-pub use topic::{Topic, TopicUse};
+pub use topic::{BagTopic, TopicUse};

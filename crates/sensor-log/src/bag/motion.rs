@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
 use crate::ros::Pose;
-use crate::{ProblemKind, Stamp};
+use crate::{RowProblemKind, Stamp};
 
 /// Maximum speed of a ground robot, m/s; faster motion is an odometry reset.
 const FASTEST: f64 = 100.0;
@@ -27,7 +27,10 @@ impl Odometer {
             return Ok(None);
         };
         if stamp < before {
-            return Err((ProblemKind::TooLate, format!("odometry of {stamp} comes after that of {before}")));
+            return Err((
+                RowProblemKind::TooLate,
+                format!("odometry of {stamp} comes after that of {before}"),
+            ));
         }
         let from_doubtful =
             self.doubtful.take().and_then(|(since, from)| motion(since, &from, stamp, &pose).ok());
@@ -92,7 +95,7 @@ mod tests {
         let mut odometer = Odometer::default();
         let pose = |x| Pose2::new(x, 0.0, 0.0);
         odometer.increment(at(5_000_000_000), pose(1.0)).unwrap();
-        assert_eq!(odometer.increment(at(4_990_000_000), pose(0.5)).unwrap_err().0, ProblemKind::TooLate);
+        assert_eq!(odometer.increment(at(4_990_000_000), pose(0.5)).unwrap_err().0, RowProblemKind::TooLate);
         assert_eq!(odometer.increment(at(5_010_000_000), pose(1.5)), Ok(Some(pose(0.5))));
     }
 
@@ -111,7 +114,7 @@ mod tests {
         let mut odometer = Odometer::default();
         odometer.increment(at(0), Pose2::new(50.0, 0.0, 0.0)).unwrap();
         let fault = odometer.increment(at(20_000_000), Pose2::new(0.0, 0.0, 0.0)).unwrap_err();
-        assert_eq!(fault.0, ProblemKind::Inconsistent);
+        assert_eq!(fault.0, RowProblemKind::Inconsistent);
         let step = odometer.increment(at(40_000_000), Pose2::new(0.5, 0.0, 0.0));
         assert_eq!(step, Ok(Some(Pose2::new(0.5, 0.0, 0.0))));
     }

@@ -13,7 +13,7 @@ use crate::formats::format::shortened;
 use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};
-use crate::{EncodedImage, LaserScan, ProblemKind, Record, RecordData, Stamp, Velocity};
+use crate::{EncodedImage, LaserScan, Record, RecordData, RowProblemKind, Stamp, Velocity};
 
 /// The fixed frame that localization places the robot in. [REP 105]
 const MAP_FRAME: &str = "map";
@@ -57,7 +57,8 @@ impl BagRecords {
         bytes: &[u8],
         log_time: Stamp,
     ) -> Result<Vec<Record>, Fault> {
-        let message = schema.decode(bytes).map_err(|error| (ProblemKind::Undecodable, error.to_string()))?;
+        let message =
+            schema.decode(bytes).map_err(|error| (RowProblemKind::Undecodable, error.to_string()))?;
         let at = |header: &Header<'_>| stamp(header, log_time);
         match message {
             RosMessage::LaserScan(message) => self.scan(at(&message.header)?, &message),
@@ -244,7 +245,7 @@ fn stamp(header: &Header<'_>, log_time: Stamp) -> Result<Stamp, Fault> {
         Ok(seconds) if u64::from(nanosec) < NANOSECONDS => {
             Ok(Stamp::from_nanoseconds(seconds * NANOSECONDS + u64::from(nanosec)))
         }
-        _ => Err((ProblemKind::BadStamp, format!("time stamp of {sec} s and {nanosec} ns"))),
+        _ => Err((RowProblemKind::BadStamp, format!("time stamp of {sec} s and {nanosec} ns"))),
     }
 }
 

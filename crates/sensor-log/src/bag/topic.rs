@@ -3,7 +3,7 @@ use std::fmt;
 /// A topic of a ROS 2 bag and its use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Topic {
+pub struct BagTopic {
     /// Its name.
     pub name: String,
     /// Type of its messages.
@@ -49,7 +49,7 @@ impl TopicInfo {
     }
 }
 
-impl fmt::Display for Topic {
+impl fmt::Display for BagTopic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, schema, n_messages, r#use } = self;
         write!(f, "{name:32} {schema:44} {n_messages:7} messages  ")?;

@@ -1,5 +1,5 @@
 use super::{EncodedImage, ImageFormat};
-use crate::ProblemKind;
+use crate::RowProblemKind;
 use crate::fault::Fault;
 use crate::formats::format::shortened;
 
@@ -10,7 +10,7 @@ use crate::formats::format::shortened;
 pub(crate) fn picture(called: &str, bytes: &[u8]) -> Result<EncodedImage, Fault> {
     let refused = |why: &str| {
         let (called, n_bytes) = (shortened(called), bytes.len());
-        Err((ProblemKind::UnreadableImage, format!("image called {called:?} {why} ({n_bytes} bytes)")))
+        Err((RowProblemKind::UnreadableImage, format!("image called {called:?} {why} ({n_bytes} bytes)")))
     };
     let pixels = called.split(';').next().unwrap_or_default().trim();
     if DEPTH.contains(&pixels) || called.contains("compressedDepth") {
@@ -49,7 +49,7 @@ mod tests {
 
     fn reason(called: &str, bytes: &[u8]) -> String {
         let (kind, reason) = picture(called, bytes).unwrap_err();
-        assert_eq!(kind, ProblemKind::UnreadableImage);
+        assert_eq!(kind, RowProblemKind::UnreadableImage);
         reason
     }
 

@@ -1,6 +1,6 @@
 use crate::fault::Fault;
 use crate::formats::format::shortened;
-use crate::{EncodedImage, ProblemKind};
+use crate::{EncodedImage, RowProblemKind};
 
 /// Pixels as messages have them, of ROS 2 and of Foxglove.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ impl Pixels<'_> {
     pub(crate) fn uncompressed(&self) -> Result<EncodedImage, Fault> {
         let Self { width, height, encoding, step, data } = *self;
         let channels = channels(encoding)?;
-        let unreadable = |reason: String| (ProblemKind::UnreadableImage, reason);
+        let unreadable = |reason: String| (RowProblemKind::UnreadableImage, reason);
         let row_bytes = u64::from(width) * channels.n_bytes as u64;
         // The last row may lack padding.
         let rows_before = u64::from(step) * u64::from(height.saturating_sub(1));
@@ -66,7 +66,7 @@ fn channels(encoding: &str) -> Result<Channels, Fault> {
         other => {
             let reason =
                 format!("pixels {:?} are not read; mono8, rgb8, bgr8, rgba8 and bgra8 are", shortened(other));
-            return Err((ProblemKind::UnreadableImage, reason));
+            return Err((RowProblemKind::UnreadableImage, reason));
         }
     };
     Ok(Channels { n_bytes, colors })
@@ -113,7 +113,7 @@ mod tests {
             [("mono8", 1, 9), ("mono8", 3, 4), ("rgb8", 6, 11), ("16UC1", 4, 8), ("mono8", u32::MAX, 9)]
         {
             let fault = square(encoding, step, &vec![0; n_bytes]).uncompressed().unwrap_err();
-            assert_eq!(fault.0, ProblemKind::UnreadableImage, "{encoding} {step}");
+            assert_eq!(fault.0, RowProblemKind::UnreadableImage, "{encoding} {step}");
         }
         let huge = Pixels { width: u32::MAX, height: u32::MAX, ..square("rgba8", u32::MAX, &[0; 9]) };
         assert!(huge.uncompressed().is_err());

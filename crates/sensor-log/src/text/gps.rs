@@ -1,4 +1,4 @@
-use crate::{ProblemKind, ReadReport, RowProblem, Stamp, TruePosition};
+use crate::{ReadReport, RowProblem, RowProblemKind, Stamp, TruePosition};
 
 /// Limit of the two steps around a fix, m; if both are longer, the fix is a jump of the receiver.
 const MAX_STEP_M: f64 = 30.0;
@@ -19,7 +19,7 @@ pub(super) fn drop_jumps(
             (Some(before), Some(after)) if before.min(*after) > MAX_STEP_M => {
                 let reason =
                     format!("fix {before:.0} m from the one before and {after:.0} m from the one after");
-                let (file, kind) = (file.to_owned(), ProblemKind::Inconsistent);
+                let (file, kind) = (file.to_owned(), RowProblemKind::Inconsistent);
                 report.leave_out(RowProblem { file, row, kind, reason }, 1);
             }
             _ => kept.push((stamp, position)),

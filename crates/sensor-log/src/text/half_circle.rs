@@ -1,5 +1,5 @@
 use super::row::RowError;
-use crate::{LaserScan, ProblemKind, ReadReport};
+use crate::{LaserScan, ReadReport, RowProblemKind};
 
 /// Range limit, m. SICK scanners return 81.91 m for no echo, older ones 51.16 m, and indoor ranges are shorter.
 const RANGE_MAX_M: f64 = 50.0;
@@ -13,7 +13,7 @@ pub(crate) fn half_circle(ranges: Vec<f64>) -> Result<LaserScan, RowError> {
         360 | 361 => 0.5_f64.to_radians(),
         n_beams @ 0..=1 => {
             let reason = format!("{n_beams} beams have no field of view");
-            return Err(RowError::new(ProblemKind::Inconsistent, reason));
+            return Err(RowError::new(RowProblemKind::Inconsistent, reason));
         }
         n_beams => std::f64::consts::PI / (n_beams - 1) as f64,
     };
@@ -54,8 +54,8 @@ mod tests {
             assert_eq!(scan.bearing(0), -std::f64::consts::FRAC_PI_2);
             assert!((scan.bearing(n_beams - 1).to_degrees() - last_degrees).abs() < 1e-9);
         }
-        assert_eq!(half_circle(vec![1.0]).unwrap_err().kind, ProblemKind::Inconsistent);
-        assert_eq!(half_circle(Vec::new()).unwrap_err().kind, ProblemKind::Inconsistent);
+        assert_eq!(half_circle(vec![1.0]).unwrap_err().kind, RowProblemKind::Inconsistent);
+        assert_eq!(half_circle(Vec::new()).unwrap_err().kind, RowProblemKind::Inconsistent);
     }
 
     #[test]

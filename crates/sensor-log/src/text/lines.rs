@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::RowError;
 use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
-use crate::{LogEnd, LogError, ProblemKind, ReadReport, RowProblem};
+use crate::{LogEnd, LogError, ReadReport, RowProblem, RowProblemKind};
 
 /// Maximum length of a row, in bytes. Rows of known formats are shorter: scanners of 1,440 beams print about 20 kB with remissions.
 const MAX_LINE_BYTES: usize = 64 << 10;
@@ -79,7 +79,7 @@ impl<R: BufRead> Lines<R> {
                 let reason = format!("line is longer than {MAX_LINE_BYTES} bytes");
                 return Ok(Some(Row {
                     number: self.number,
-                    text: Err(RowError { kind: ProblemKind::Unrecognized, reason }),
+                    text: Err(RowError { kind: RowProblemKind::Unrecognized, reason }),
                 }));
             }
             let significant = self.buffer.trim_ascii();
@@ -88,7 +88,7 @@ impl<R: BufRead> Lines<R> {
             }
         }
         let text = std::str::from_utf8(self.buffer.trim_ascii())
-            .map_err(|_| RowError { kind: ProblemKind::Unrecognized, reason: "line is not text".into() });
+            .map_err(|_| RowError { kind: RowProblemKind::Unrecognized, reason: "line is not text".into() });
         Ok(Some(Row { number: self.number, text }))
     }
 

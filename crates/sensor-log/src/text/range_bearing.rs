@@ -12,7 +12,7 @@ use super::Lines;
 use super::row::{RowError, columns, id, number};
 use crate::formats::format::shortened;
 use crate::{
-    Detection, DetectionTarget, LogError, ProblemKind, ReadReport, Record, RecordData, Stamp, TrueLandmark,
+    Detection, DetectionTarget, LogError, ReadReport, Record, RecordData, RowProblemKind, Stamp, TrueLandmark,
 };
 
 /// Time between two steps, nanoseconds.
@@ -42,7 +42,7 @@ fn parse(row: &str) -> Result<Line, RowError> {
     let word = row.split_ascii_whitespace().next().unwrap_or_default();
     if !matches!(word, "L" | "P" | "O" | "Z") {
         let reason = format!("{:?} is none of L, P, O, Z", shortened(word));
-        return Err(RowError::new(ProblemKind::Unrecognized, reason));
+        return Err(RowError::new(RowProblemKind::Unrecognized, reason));
     }
     let [_, first, second, third] = columns(row)?;
     let (b, c) = (number(second)?, number(third)?);

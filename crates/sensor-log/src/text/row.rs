@@ -1,17 +1,17 @@
 use std::str::FromStr;
 
 use crate::formats::format::shortened;
-use crate::{ProblemKind, Stamp};
+use crate::{RowProblemKind, Stamp};
 
 /// Reason why a row is unusable.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowError {
-    pub(crate) kind: ProblemKind,
+    pub(crate) kind: RowProblemKind,
     pub(crate) reason: String,
 }
 
 impl RowError {
-    pub(crate) fn new(kind: ProblemKind, reason: impl Into<String>) -> Self {
+    pub(crate) fn new(kind: RowProblemKind, reason: impl Into<String>) -> Self {
         Self { kind, reason: reason.into() }
     }
 }
@@ -41,7 +41,7 @@ pub(crate) fn exactly<'a, const N: usize>(
     if n_columns == N {
         Ok(columns)
     } else {
-        Err(RowError::new(ProblemKind::ColumnCount, format!("{n_columns} columns instead of {N}")))
+        Err(RowError::new(RowProblemKind::ColumnCount, format!("{n_columns} columns instead of {N}")))
     }
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn number(column: &str) -> Result<f64, RowError> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(RowError::new(ProblemKind::NotFinite, format!("{:?} is not finite", shortened(column))))
+        Err(RowError::new(RowProblemKind::NotFinite, format!("{:?} is not finite", shortened(column))))
     }
 }
 
@@ -73,13 +73,13 @@ pub(crate) fn stamp(column: &str) -> Result<Stamp, RowError> {
 /// Seconds as a stamp.
 pub(crate) fn stamp_of(seconds: f64) -> Result<Stamp, RowError> {
     Stamp::from_seconds(seconds)
-        .ok_or_else(|| RowError::new(ProblemKind::BadStamp, format!("{seconds} s is no time stamp")))
+        .ok_or_else(|| RowError::new(RowProblemKind::BadStamp, format!("{seconds} s is no time stamp")))
 }
 
 fn parse<T: FromStr>(column: &str, what: &str) -> Result<T, RowError> {
-    column
-        .parse()
-        .map_err(|_| RowError::new(ProblemKind::NotANumber, format!("{:?} is not {what}", shortened(column))))
+    column.parse().map_err(|_| {
+        RowError::new(RowProblemKind::NotANumber, format!("{:?} is not {what}", shortened(column)))
+    })
 }
 
 #[cfg(test)]
@@ -90,11 +90,11 @@ mod tests {
     fn says_what_is_wrong_with_a_column() {
         let kind = |result: Result<f64, RowError>| result.unwrap_err().kind;
         assert_eq!(number("-1.5e3").unwrap(), -1500.0);
-        assert_eq!(kind(number("1,5")), ProblemKind::NotANumber);
-        assert_eq!(kind(number("nan")), ProblemKind::NotFinite);
-        assert_eq!(kind(number("1e999")), ProblemKind::NotFinite);
-        assert_eq!(stamp("-1").unwrap_err().kind, ProblemKind::BadStamp);
-        assert_eq!(id("4294967296").unwrap_err().kind, ProblemKind::NotANumber);
+        assert_eq!(kind(number("1,5")), RowProblemKind::NotANumber);
+        assert_eq!(kind(number("nan")), RowProblemKind::NotFinite);
+        assert_eq!(kind(number("1e999")), RowProblemKind::NotFinite);
+        assert_eq!(stamp("-1").unwrap_err().kind, RowProblemKind::BadStamp);
+        assert_eq!(id("4294967296").unwrap_err().kind, RowProblemKind::NotANumber);
         assert_eq!(columns::<2>(" a\t b ").unwrap(), ["a", "b"]);
         assert_eq!(comma_columns::<2>("a, b").unwrap(), ["a", "b"]);
         assert_eq!(columns::<2>("a b c").unwrap_err().reason, "3 columns instead of 2");

@@ -18,7 +18,7 @@ use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
 use crate::{
-    LaserScan, LogEnd, LogError, LogFormat, PoseKind, ProblemKind, ReadReport, Record, RecordData, Stamp,
+    LaserScan, LogEnd, LogError, LogFormat, PoseKind, ReadReport, Record, RecordData, RowProblemKind, Stamp,
 };
 
 /// Maximum size of a file, in bytes; it bounds the memory used.
@@ -130,7 +130,7 @@ fn pose_number(value: &Value) -> Result<f64, RowError> {
     match value.as_f64() {
         Some(number) => Ok(number),
         None if value.as_str() == Some(NOT_FINITE) => {
-            Err(RowError::new(ProblemKind::NotFinite, "not finite"))
+            Err(RowError::new(RowProblemKind::NotFinite, "not finite"))
         }
         None => Err(not_a_number("not a number")),
     }
@@ -146,7 +146,7 @@ fn beam(value: &Value) -> Result<f64, RowError> {
 }
 
 fn not_a_number(reason: &str) -> RowError {
-    RowError::new(ProblemKind::NotANumber, reason)
+    RowError::new(RowProblemKind::NotANumber, reason)
 }
 
 impl RowError {

@@ -1,5 +1,5 @@
 use super::clock_faults::{ClockFault, clock_faults};
-use crate::{ProblemKind, ReadReport, RowProblem, Stamp};
+use crate::{ReadReport, RowProblem, RowProblemKind, Stamp};
 
 /// Content of a row of a text file, with its line and its time.
 pub(super) struct Timed<T> {
@@ -20,7 +20,12 @@ pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut Rea
             Some((_, ClockFault::Outlier)) => {
                 let reason = format!("{} is far from the times of the rows around it", row.stamp);
                 report.leave_out(
-                    RowProblem { file: file.to_owned(), row: row.row, kind: ProblemKind::BadStamp, reason },
+                    RowProblem {
+                        file: file.to_owned(),
+                        row: row.row,
+                        kind: RowProblemKind::BadStamp,
+                        reason,
+                    },
                     1,
                 );
                 continue;
@@ -43,7 +48,7 @@ pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut Rea
             report.add(RowProblem {
                 file: file.to_owned(),
                 row: after.row,
-                kind: ProblemKind::OutOfOrder,
+                kind: RowProblemKind::OutOfOrder,
                 reason,
             });
         }
@@ -72,7 +77,7 @@ fn longest<T>(
         let (begin, end) = (begin.row, end.row);
         let reason = format!("the clock is set back {cuts}; {n_out} rows before or after are left out");
         report.leave_out(
-            RowProblem { file: file.to_owned(), row: first.row, kind: ProblemKind::TooLate, reason },
+            RowProblem { file: file.to_owned(), row: first.row, kind: RowProblemKind::TooLate, reason },
             n_out as u64,
         );
         report.warn(
@@ -103,7 +108,7 @@ mod tests {
     fn a_row_out_of_order_is_sorted_and_counted() {
         let (rows, report) = sorted(&[1.0, 3.0, 2.0, 4.0]);
         assert_eq!(rows, [1, 3, 2, 4]);
-        assert_eq!((report.rows_read, report.problems[&ProblemKind::OutOfOrder]), (4, 1));
+        assert_eq!((report.rows_read, report.problems[&RowProblemKind::OutOfOrder]), (4, 1));
         assert!(report.warnings.is_empty());
     }
 
@@ -112,14 +117,14 @@ mod tests {
         let (rows, report) = sorted(&[1.3e9, 1.3e9 + 1.0, 5.0, 1.3e9 + 2.0]);
         assert_eq!(rows, [1, 2, 4]);
         assert_eq!((report.rows_read, report.n_problems()), (3, 1));
-        assert_eq!((report.examples[0].row, report.examples[0].kind), (3, ProblemKind::BadStamp));
+        assert_eq!((report.examples[0].row, report.examples[0].kind), (3, RowProblemKind::BadStamp));
     }
 
     #[test]
     fn of_a_clock_that_is_set_back_the_longest_stretch_is_read() {
         let (rows, report) = sorted(&[1.0, 2.0, 3.0, 4.0, 1.5, 2.5, 3.5, 4.5, 5.5]);
         assert_eq!(rows, [5, 6, 7, 8, 9]);
-        assert_eq!((report.rows_read, report.problems[&ProblemKind::TooLate]), (5, 4));
+        assert_eq!((report.rows_read, report.problems[&RowProblemKind::TooLate]), (5, 4));
         assert_eq!((report.examples.len(), report.examples[0].row), (1, 1));
         assert_eq!(report.warnings[0].name, "clock_set_back");
         let (rows, _) = sorted(&[1.0, 2.0, 3.0, 4.0, 1.5, 2.5, 3.5, 4.5]);

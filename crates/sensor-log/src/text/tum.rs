@@ -13,7 +13,7 @@ use super::row::{RowError, exactly, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
-use crate::{LogError, PoseKind, ProblemKind, ReadReport, Record, RecordData, WriteReport};
+use crate::{LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind, WriteReport};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row, &ORDER, PoseKind::default()).is_ok()
@@ -73,7 +73,7 @@ fn parse(row: &str, order: &Order, kind: PoseKind) -> Result<Record, RowError> {
     let (qx, qy, qz, qw) = (number(qx)?, number(qy)?, number(qz)?, number(qw)?);
     let norm = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
     if (norm - 1.0).abs() > NORM_TOLERANCE {
-        return Err(RowError::new(ProblemKind::Inconsistent, format!("quaternion of norm {norm}")));
+        return Err(RowError::new(RowProblemKind::Inconsistent, format!("quaternion of norm {norm}")));
     }
     let pose = Pose2::new(x, y, heading_of([qx, qy, qz, qw]));
     Ok(Record { stamp, data: kind.data(pose) })

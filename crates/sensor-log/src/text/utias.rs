@@ -14,7 +14,7 @@ use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::{
-    Detection, DetectionTarget, LogError, LogFormat, ProblemKind, ReadReport, Record, RecordData, Stamp,
+    Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, RowProblemKind, Stamp,
     TrueLandmark, Velocity,
 };
 
@@ -89,7 +89,7 @@ fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, D
         let (subject, barcode) = (id(subject)?, id(barcode)?);
         match targets.entry(barcode) {
             Entry::Occupied(first) => Err(RowError::new(
-                ProblemKind::Inconsistent,
+                RowProblemKind::Inconsistent,
                 format!("barcode {barcode} is already that of {:?}", first.get()),
             )),
             Entry::Vacant(slot) => {

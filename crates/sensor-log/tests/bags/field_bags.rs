@@ -9,7 +9,7 @@ use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transf
 use crate::common::cdr::Encoder;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogError, LogFormat, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
+    LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
 };
 
 const SECOND: u64 = 1_000_000_000;
@@ -230,7 +230,7 @@ fn empty_or_broken_part_is_named_and_the_rest_is_read() {
             }
             let (records, report) = read_folder(folder.path());
             assert_eq!(scan_seconds(&records), right, "{broken} {bytes:?}");
-            assert_eq!(report.problems.get(&ProblemKind::UnreadableFile), Some(&1));
+            assert_eq!(report.problems.get(&RowProblemKind::UnreadableFile), Some(&1));
             assert_eq!(report.examples[0].file, format!("drive_{broken}.mcap"));
         }
     }

@@ -11,8 +11,8 @@ use crate::common::bag::{
 use mcap::WriteOptions;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, LogSummary, OpenOptions, ProblemKind, Record, RecordData, TopicUse, convert,
-    open,
+    LogEnd, LogError, LogFormat, LogSummary, OpenOptions, Record, RecordData, RowProblemKind, TopicUse,
+    convert, open,
 };
 
 const DRIVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/ros2_drive.mcap");
@@ -238,7 +238,8 @@ fn damaged_messages_are_told_and_the_rest_of_the_bag_is_read() {
     let (records, report) = bag.read();
     assert_eq!(kinds(&records), ["laser scan", "odometry increment"]);
     assert_eq!(records[1].data, RecordData::OdometryIncrement(Pose2::new(0.5, 0.0, 0.0)));
-    let problems = [(ProblemKind::NotFinite, 1), (ProblemKind::BadStamp, 1), (ProblemKind::Undecodable, 2)];
+    let problems =
+        [(RowProblemKind::NotFinite, 1), (RowProblemKind::BadStamp, 1), (RowProblemKind::Undecodable, 2)];
     assert_eq!(report.problems, BTreeMap::from(problems));
     assert!(report.examples[1].reason.contains("0x0007 is XCDR2"), "{report}");
 }
@@ -252,7 +253,7 @@ fn time_that_goes_back_is_told_as_in_every_log() {
     }
     let (records, report) = bag.read();
     assert!(records.is_sorted_by_key(|record| record.stamp));
-    assert_eq!(report.problems, BTreeMap::from([(ProblemKind::TooLate, 2)]), "{report}");
+    assert_eq!(report.problems, BTreeMap::from([(RowProblemKind::TooLate, 2)]), "{report}");
     let scans = records.iter().filter(|record| matches!(record.data, RecordData::Scan(_))).count();
     assert_eq!(scans, 3, "a scan that is seconds behind the ones before it is none of them");
 }

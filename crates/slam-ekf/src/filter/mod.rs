@@ -15,8 +15,8 @@ mod update;
 mod update_robot;
 
 pub use linearization::LinearizationPoint;
-pub use map_management::confirmation::ConfirmationParams;
-pub use map_management::merge::MergingParams;
+pub use map_management::confirmation::LandmarkConfirmationParams;
+pub use map_management::merge::LandmarkMergingParams;
 pub use params::{CovarianceUpdate, OutlierRule, SlamParams, UpdateOrder};
 pub use predicted_measurement::PredictedMeasurement;
 pub use state::{EkfSlam, LandmarkEstimate};

@@ -1,4 +1,4 @@
-use super::{ConfirmationParams, LinearizationPoint, MergingParams};
+use super::{LandmarkConfirmationParams, LandmarkMergingParams, LinearizationPoint};
 use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
@@ -29,10 +29,10 @@ pub struct SlamParams {
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub retire_after: Option<usize>,
     /// Conditions for a landmark to be confirmed.
-    pub confirmation: ConfirmationParams,
+    pub confirmation: LandmarkConfirmationParams,
     /// When two landmarks of the map are merged; never, if not given.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub merging: Option<MergingParams>,
+    pub merging: Option<LandmarkMergingParams>,
 }
 
 /// Treatment of observations outside the gate.
@@ -70,7 +70,7 @@ pub enum UpdateOrder {
 ///     let params = SlamParams { covariance_update, ..SlamParams::default() };
 ///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
 ///     slam.update(&look, &mut KnownIds)?;
-///     slam.predict(&IncrementMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
+///     slam.predict(&OdometryMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
 ///     slam.update(&look, &mut KnownIds)?;
 ///     Ok::<_, SlamError>(slam.robot().x())
 /// };
@@ -109,7 +109,7 @@ impl Default for SlamParams {
             covariance_update: CovarianceUpdate::default(),
             linearization_point: LinearizationPoint::default(),
             retire_after: None,
-            confirmation: ConfirmationParams::default(),
+            confirmation: LandmarkConfirmationParams::default(),
             merging: None,
         }
     }
@@ -135,7 +135,7 @@ impl SlamParams {
                 range: "from 0 to 1",
             });
         }
-        self.merging.map(MergingParams::validated).transpose()?;
+        self.merging.map(LandmarkMergingParams::validated).transpose()?;
         Ok(self)
     }
 

@@ -54,8 +54,8 @@ where
     /// slam.update(&seen, &mut KnownIds)?;
     ///
     /// let mut resumed = EkfSlam::resume(sensor, params, slam.snapshot())?;
-    /// slam.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
-    /// resumed.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// slam.predict(&OdometryMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// resumed.predict(&OdometryMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
     /// assert_eq!(resumed.snapshot(), slam.snapshot());
     ///
     /// let mut halved = slam.snapshot();

@@ -25,7 +25,7 @@ use crate::{
 /// let mut ids = KnownIds;
 ///
 /// slam.update(&seen(2.0, 0.0), &mut ids)?;                                          // a landmark two metres ahead
-/// slam.predict(&IncrementMotion::default(), &Pose2::new(1.1, 0.0, 0.0))?;           // odometry: 1.1 m forward
+/// slam.predict(&OdometryMotion::default(), &Pose2::new(1.1, 0.0, 0.0))?;           // odometry: 1.1 m forward
 /// slam.update(&seen(1.0, 0.0), &mut ids)?;                                          // but it is one metre away now
 ///
 /// assert!(slam.robot().x() > 1.0 && slam.robot().x() < 1.1);

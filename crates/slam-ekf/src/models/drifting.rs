@@ -1,7 +1,7 @@
 use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix4, OMatrix, Vector4};
 use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, TangentMatrix};
 
-use super::IncrementMotion;
+use super::OdometryMotion;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
 
 /// A pose and the heading drift of its odometry.
@@ -36,7 +36,7 @@ impl Manifold for DriftingPose {
 
 /// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct DriftingMotion(pub IncrementMotion);
+pub struct DriftingMotion(pub OdometryMotion);
 
 impl DriftingMotion {
     fn increment(state: &DriftingPose, increment: &Pose2<f64>) -> Pose2<f64> {

@@ -14,7 +14,7 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct IncrementMotion {
+pub struct OdometryMotion {
     /// Variance along and across the motion per m, m²/m.
     pub translation_variance_per_meter: f64,
     /// Heading variance per m, rad²/m.
@@ -27,7 +27,7 @@ pub struct IncrementMotion {
     pub heading_variance_per_step: f64,
 }
 
-impl Default for IncrementMotion {
+impl Default for OdometryMotion {
     fn default() -> Self {
         Self {
             translation_variance_per_meter: 0.02 * 0.02 / 0.25,
@@ -39,7 +39,7 @@ impl Default for IncrementMotion {
     }
 }
 
-impl MotionModel for IncrementMotion {
+impl MotionModel for OdometryMotion {
     type State = Pose2<f64>;
     type Control = Pose2<f64>;
 

@@ -17,13 +17,13 @@ mod wall;
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use correlated_noise::CorrelatedNoise;
 pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor};
-pub use increment::IncrementMotion;
+pub use increment::OdometryMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::MountedSensor;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
-pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
+pub use scaled::{MotionWithRangeScale, PoseWithRangeScale, RangeBearingSensorWithScale};
 pub use velocity::{VelocityControl, VelocityMotion};
 #[cfg(feature = "lines")]
 pub use wall::{Wall, WallLine, WallMeasurement, WallSensor};

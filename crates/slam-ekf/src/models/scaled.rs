@@ -9,14 +9,14 @@ use crate::{LandmarkModel, NewLandmark};
 /// Tangent order `(x, y, θ, a)`, with $`e^a`$ the factor of the sensor on every range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct ScaledPose {
+pub struct PoseWithRangeScale {
     /// Pose of the robot.
     pub pose: Pose2<f64>,
     /// $`a`$; 0 for a sensor without scale error.
     pub log_range_scale: f64,
 }
 
-impl Manifold for ScaledPose {
+impl Manifold for PoseWithRangeScale {
     type Scalar = f64;
     type Dim = Const<4>;
     fn dim(&self) -> Const<4> {
@@ -35,19 +35,19 @@ impl Manifold for ScaledPose {
 
 /// Any motion of a pose; the scale is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct ScaledMotion<M>(pub M);
+pub struct MotionWithRangeScale<M>(pub M);
 
-impl<M: MotionModel<State = Pose2<f64>>> MotionModel for ScaledMotion<M> {
-    type State = ScaledPose;
+impl<M: MotionModel<State = Pose2<f64>>> MotionModel for MotionWithRangeScale<M> {
+    type State = PoseWithRangeScale;
     type Control = M::Control;
 
-    fn propagate(&self, state: &ScaledPose, control: &M::Control) -> ScaledPose {
-        ScaledPose { pose: self.0.propagate(&state.pose, control), ..*state }
+    fn propagate(&self, state: &PoseWithRangeScale, control: &M::Control) -> PoseWithRangeScale {
+        PoseWithRangeScale { pose: self.0.propagate(&state.pose, control), ..*state }
     }
-    fn jacobian(&self, state: &ScaledPose, control: &M::Control) -> Matrix4<f64> {
+    fn jacobian(&self, state: &PoseWithRangeScale, control: &M::Control) -> Matrix4<f64> {
         self.0.jacobian(&state.pose, control).to_homogeneous()
     }
-    fn noise(&self, state: &ScaledPose, control: &M::Control) -> Matrix4<f64> {
+    fn noise(&self, state: &PoseWithRangeScale, control: &M::Control) -> Matrix4<f64> {
         let mut noise = Matrix4::zeros();
         noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.0.noise(&state.pose, control));
         noise
@@ -58,29 +58,29 @@ impl<M: MotionModel<State = Pose2<f64>>> MotionModel for ScaledMotion<M> {
 ///
 /// Triangulation by bearings along the path determines the factor; with a start variance of zero it is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct ScaledRangeBearingSensor<S = RangeBearingSensor>(pub S);
+pub struct RangeBearingSensorWithScale<S = RangeBearingSensor>(pub S);
 
-impl<S> LandmarkModel for ScaledRangeBearingSensor<S>
+impl<S> LandmarkModel for RangeBearingSensorWithScale<S>
 where
     S: LandmarkModel<Robot = Pose2<f64>, Landmark = Vector2<f64>, Measurement = RangeBearing>,
 {
-    type Robot = ScaledPose;
+    type Robot = PoseWithRangeScale;
     type Landmark = Vector2<f64>;
     type Measurement = RangeBearing;
 
-    fn expected(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> RangeBearing {
+    fn expected(&self, robot: &PoseWithRangeScale, landmark: &Vector2<f64>) -> RangeBearing {
         let seen = self.0.expected(&robot.pose, landmark);
         RangeBearing { range: seen.range * robot.log_range_scale.exp(), ..seen }
     }
 
-    fn robot_jacobian(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> Matrix2x4<f64> {
+    fn robot_jacobian(&self, robot: &PoseWithRangeScale, landmark: &Vector2<f64>) -> Matrix2x4<f64> {
         let mut jacobian = self.0.robot_jacobian(&robot.pose, landmark).insert_column(3, 0.0);
         jacobian.row_mut(0).scale_mut(robot.log_range_scale.exp());
         jacobian.m14 = self.expected(robot, landmark).range;
         jacobian
     }
 
-    fn landmark_jacobian(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> Matrix2<f64> {
+    fn landmark_jacobian(&self, robot: &PoseWithRangeScale, landmark: &Vector2<f64>) -> Matrix2<f64> {
         let mut jacobian = self.0.landmark_jacobian(&robot.pose, landmark);
         jacobian.row_mut(0).scale_mut(robot.log_range_scale.exp());
         jacobian
@@ -119,7 +119,7 @@ where
         self.0.symmetries()
     }
 
-    fn robot_symmetry(&self, robot: &ScaledPose) -> DMatrix<f64> {
+    fn robot_symmetry(&self, robot: &PoseWithRangeScale) -> DMatrix<f64> {
         self.0.robot_symmetry(&robot.pose).insert_row(3, 0.0)
     }
 
@@ -129,9 +129,9 @@ where
 
     fn initialize(
         &self,
-        robot: &ScaledPose,
+        robot: &PoseWithRangeScale,
         measurement: &RangeBearing,
-    ) -> NewLandmark<Vector2<f64>, ScaledPose> {
+    ) -> NewLandmark<Vector2<f64>, PoseWithRangeScale> {
         let true_to_scale =
             RangeBearing { range: measurement.range * (-robot.log_range_scale).exp(), ..*measurement };
         let new = self.0.initialize(&robot.pose, &true_to_scale);

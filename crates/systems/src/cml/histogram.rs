@@ -1,7 +1,7 @@
-use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+use wayfix_evaluation::plot::{LinePlot, PlotSeries};
 
 /// Shares of the steps by error, in classes of equal width, as outlines. The last class holds all larger errors.
-pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinesPlot {
+pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinePlot {
     const N: usize = 40;
     let width = most_m / N as f64;
     let outline = |errors: &[f64]| {
@@ -17,11 +17,11 @@ pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> 
             })
             .collect()
     };
-    LinesPlot {
+    LinePlot {
         title: title.to_owned(),
         x_label: "position error, m".to_owned(),
         y_label: "share of the steps, %".to_owned(),
         series: courses.into_iter().map(|(name, errors)| PlotSeries::new(name, outline(&errors))).collect(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }

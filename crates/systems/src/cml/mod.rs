@@ -24,6 +24,6 @@ pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};
 pub use plan::{CameraReadingMode, CmlRunPlan};
 pub use plots::plots;
 pub use reader::ViewReader;
-pub use run::{CmlRun, CmlTask, StartPlace, first_true_pose, run};
-pub use saved::{MapSaver, SavedViewMapError, end_note, read_map};
+pub use run::{CmlRun, CmlStartPose, CmlTask, first_true_pose, run};
+pub use saved::{PeriodicMapSaver, SavedViewMapError, end_note, read_map};
 pub use system::{CmlSystem, CmlViewResult, PanoramaLocalizer, PanoramaMap};

@@ -8,7 +8,7 @@ use super::{
     recording::{AzimuthDirectionEvidence, FrameRecording, HeadingSource, PosedFrame, path, turn_evidence},
     synthetic_odometry,
 };
-use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
+use crate::system::{HeldVelocity, IncrementPlausibilityCheck, check_velocity};
 use wayfix_evaluation::errors::ReferencePath;
 
 /// Contents of a run: the training views, and the records to process after training.
@@ -178,7 +178,7 @@ fn records(
 
 /// Images of a log with the odometry heading at each. Skips impossible odometry, which the system rejects and reports.
 fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage, f64)> {
-    let (mut held, mut plausible) = (HeldVelocity::default(), PlausibleIncrement::default());
+    let (mut held, mut plausible) = (HeldVelocity::default(), IncrementPlausibilityCheck::default());
     let mut pose = Pose2::new(0.0, 0.0, 0.0);
     let mut headings = Vec::new();
     for record in records {

@@ -1,5 +1,5 @@
 use super::{CmlRun, CmlViewResult, histogram::histogram};
-use wayfix_evaluation::plot::{LinesPlot, MapPlot, PlotError, PlotSeries, SvgPlot};
+use wayfix_evaluation::plot::{LinePlot, MapPlot, PlotError, PlotSeries, SvgPlot};
 
 /// Plots the path with the references, error histogram and error over time, distance to the best reference, and number of references.
 ///
@@ -47,12 +47,12 @@ fn map(run: &CmlRun) -> MapPlot {
     }
 }
 
-fn over_time(title: &str, y_label: &str, series: Vec<PlotSeries>) -> LinesPlot {
-    LinesPlot {
+fn over_time(title: &str, y_label: &str, series: Vec<PlotSeries>) -> LinePlot {
+    LinePlot {
         title: title.to_owned(),
         x_label: "t, s".to_owned(),
         y_label: y_label.to_owned(),
         series,
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }

@@ -25,7 +25,7 @@ pub enum CmlTask {
 
 /// Start pose of the robot at the first view.
 #[derive(Clone, Debug)]
-pub enum StartPlace {
+pub enum CmlStartPose {
     /// Near this pose, with the uncertainty [`CmlParams::start_uncertainty`].
     Near(Pose2<f64>),
     /// At exactly this pose, which defines the frame of a new map.
@@ -58,7 +58,7 @@ pub fn run(
     mut system: CmlSystem,
     plan: &CmlRunPlan,
     task: CmlTask,
-    start: StartPlace,
+    start: CmlStartPose,
     params: &CmlParams,
     seed: u64,
     observe: impl FnMut(RunStep<'_, CmlSystem>),
@@ -103,12 +103,12 @@ pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
 /// Uncertainty of a start pose that defines the frame of a map.
 const EXACT: PoseSigmas = PoseSigmas { position_sigma: 1e-3, heading_sigma: 1e-3 };
 
-fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
+fn begin(start: CmlStartPose, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
     Ok(match start {
-        StartPlace::Anywhere => Start::Anywhere,
-        StartPlace::Saved(start) => start,
-        StartPlace::Exactly(pose) => Start::Known(gaussian(&pose, &EXACT)?),
-        StartPlace::Near(pose) => {
+        CmlStartPose::Anywhere => Start::Anywhere,
+        CmlStartPose::Saved(start) => start,
+        CmlStartPose::Exactly(pose) => Start::Known(gaussian(&pose, &EXACT)?),
+        CmlStartPose::Near(pose) => {
             // Draws the start error from the stated uncertainty.
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);

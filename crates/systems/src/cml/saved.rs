@@ -60,7 +60,7 @@ pub fn end_note(archive: &MapArchive) -> Option<String> {
 /// Saves the map periodically, in the time of the log, and at the end.
 ///
 /// A save replaces the old file atomically. Later changes are appended as a journal, until the journal is longer than the map.
-pub struct MapSaver {
+pub struct PeriodicMapSaver {
     path: PathBuf,
     /// Log time between two saves, s; `None` saves only at the end.
     period: Option<f64>,
@@ -76,7 +76,7 @@ struct OpenJournal {
     n_appended: usize,
 }
 
-impl MapSaver {
+impl PeriodicMapSaver {
     /// Creates a saver that writes to `path` every `period` seconds of log time.
     pub fn new(path: PathBuf, period: Option<f64>) -> Self {
         Self { path, period, saved_at: None, open: None, failure: None }

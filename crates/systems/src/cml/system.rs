@@ -11,7 +11,7 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{CmlParams, PoseSigmas, ViewReader};
 use crate::system::{
-    EventCounts, HeldVelocity, PlausibleIncrement, Stopwatch, System, check_velocity, warn_of_lag,
+    EventCounts, HeldVelocity, IncrementPlausibilityCheck, Stopwatch, System, check_velocity, warn_of_lag,
 };
 
 /// The localizer of panoramas with an index, which avoids comparing with every reference.
@@ -25,7 +25,7 @@ pub struct CmlSystem {
     localizer: PanoramaLocalizer,
     velocity: HeldVelocity,
     velocity_hold: f64,
-    plausible: PlausibleIncrement,
+    plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
     /// Dead-reckoned pose at each view, from the first record on.
     dead_reckoning: Vec<(Stamp, Pose2<f64>)>,
@@ -70,7 +70,7 @@ impl CmlSystem {
             localizer: PanoramaLocalizer::with_map(params.localizer, map, Start::Anywhere)?,
             velocity: HeldVelocity::default(),
             velocity_hold: params.velocity_hold,
-            plausible: PlausibleIncrement::default(),
+            plausible: IncrementPlausibilityCheck::default(),
             odometry: None,
             dead_reckoning: Vec::new(),
             moved: Pose2::identity(),

@@ -1,7 +1,7 @@
 use wayfix_color_map::ColorId;
 use wayfix_estimation_traits::Pose2;
 
-use super::{ColorRun, LabelCounts, rate_of};
+use super::{ClassificationCounts, ColorRun, rate_of};
 use crate::system::System;
 use wayfix_evaluation::{
     errors::{MeanInterval, TrajectorySample, trajectory_errors},
@@ -57,7 +57,7 @@ fn odometry(run: &ColorRun) -> Option<Metric> {
 }
 
 fn classification(run: &ColorRun) -> Vec<Metric> {
-    let labelled: Vec<&LabelCounts> =
+    let labelled: Vec<&ClassificationCounts> =
         run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref()).collect();
     let overall: Vec<f64> = labelled.iter().filter_map(|counts| counts.rate()).collect();
     let Some(overall) = MeanInterval::of(&overall) else { return Vec::new() };

@@ -4,12 +4,12 @@ use wayfix_sensor_log::DecodedImage;
 
 /// Number of labelled pixels of each map colour that were classified correctly.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LabelCounts {
+pub struct ClassificationCounts {
     /// `(right, all)` of each colour, in the order of the map.
     pub by_color: Vec<(u64, u64)>,
 }
 
-impl LabelCounts {
+impl ClassificationCounts {
     /// Share of all labelled pixels that were classified correctly; `None` without labelled pixels.
     pub fn rate(&self) -> Option<f64> {
         let (right, all) =
@@ -32,7 +32,7 @@ pub fn tally(
     labels: &DecodedImage,
     classifier: &PixelClassifier,
     n_colors: usize,
-) -> Option<LabelCounts> {
+) -> Option<ClassificationCounts> {
     if (labels.width, labels.height) != (image.width(), image.height()) {
         return None;
     }
@@ -43,16 +43,16 @@ pub fn tally(
         counts.1 += 1;
         counts.0 += u64::from(classifier.classify(*pixel) == Some(ColorId(truth)));
     }
-    Some(LabelCounts { by_color })
+    Some(ClassificationCounts { by_color })
 }
 
 /// Mean rate of a colour over the images that show at least `min_pixels` of it.
 pub fn rate_of<'a>(
-    counts: impl IntoIterator<Item = &'a LabelCounts>,
+    counts: impl IntoIterator<Item = &'a ClassificationCounts>,
     color: ColorId,
     min_pixels: u64,
 ) -> Vec<f64> {
-    let shows = |counts: &&LabelCounts| {
+    let shows = |counts: &&ClassificationCounts| {
         counts.by_color.get(usize::from(color.0)).is_some_and(|(_, all)| *all >= min_pixels)
     };
     counts.into_iter().filter(shows).filter_map(|counts| counts.rate_of(color)).collect()

@@ -15,10 +15,10 @@ mod system;
 
 pub use estimates::{ColorDrawing, ColorEstimateLog};
 pub use figures::summarize;
-pub use labels::{LabelCounts, rate_of, tally};
+pub use labels::{ClassificationCounts, rate_of, tally};
 pub use map::{field_lines, read_map};
 pub use params::{ColorSystemParams, StartPoseUncertainty};
-pub use particle_film::ParticleFilm;
+pub use particle_film::ParticleSnapshots;
 pub use plots::{film, plots, uv_ellipses};
 pub use run::{ColorRun, n_images, run};
 pub use system::{ColorFrameResult, ColorSystem, StartPose};

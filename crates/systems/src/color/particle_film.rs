@@ -22,7 +22,7 @@ const TRUTH: [u8; 3] = [214, 39, 40];
 /// The particles on the field at some moments of a run, recorded during the run and drawn afterwards.
 ///
 /// Of each sixth of the run it shows the moment with the most particles, where the uncertainty is largest.
-pub struct ParticleFilm {
+pub struct ParticleSnapshots {
     n_camera_frames: usize,
     kept: [Option<Moment>; N_FRAMES],
 }
@@ -33,7 +33,7 @@ struct Moment {
     estimate: Pose2<f64>,
 }
 
-impl ParticleFilm {
+impl ParticleSnapshots {
     /// Creates a film for a log of this many camera frames.
     pub fn new(n_camera_frames: usize) -> Self {
         Self { n_camera_frames, kept: [const { None }; N_FRAMES] }

@@ -7,8 +7,8 @@ use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
     errors::TrajectorySample,
     plot::{
-        EllipsesPlot, ErrorPlot, ErrorSample, FilmStrip, FilmStripFrame, LinesPlot, MapPlot, NamedEllipse,
-        PlotError, PlotSeries, SvgPlot,
+        EllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries,
+        PoseErrorPlot, PoseErrorSample, SvgPlot,
     },
 };
 
@@ -115,23 +115,23 @@ fn path(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> Ma
     }
 }
 
-fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> ErrorPlot {
+fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> PoseErrorPlot {
     let error_sample = |(frame, sample): &(&ColorFrameResult, TrajectorySample)| {
         let sigma = sample.covariance.diagonal().map(f64::sqrt);
-        ErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
+        PoseErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
     };
-    ErrorPlot {
+    PoseErrorPlot {
         title: "Pose error in the robot frame".to_owned(),
         samples: samples.iter().map(error_sample).collect(),
     }
 }
 
-fn particles(run: &ColorRun) -> LinesPlot {
+fn particles(run: &ColorRun) -> LinePlot {
     let series = |name: &str, value: &dyn Fn(&ColorFrameResult) -> f64| {
         let points = run.system.frames().iter().map(|frame| (run.seconds(frame.stamp), value(frame)));
         PlotSeries::new(name, points.collect())
     };
-    LinesPlot {
+    LinePlot {
         title: "Particles".to_owned(),
         x_label: "t, s".to_owned(),
         y_label: "number".to_owned(),
@@ -139,6 +139,6 @@ fn particles(run: &ColorRun) -> LinesPlot {
             series("particles", &|frame| frame.n_particles as f64),
             series("effective particles", &|frame| frame.effective_particles),
         ],
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_model::{
-    ColorMeans, LightingBank, LightingFilter, LightingParams, LightingPriors, PooledPixelVariance,
+    ColorMeans, LightingBank, LightingFilter, LightingFilterParams, LightingPriors, PooledPixelVariance,
     PriorLearningParams, TrainingVenue, learn_priors,
 };
 use wayfix_kalman::MarkovChain;
@@ -72,7 +72,7 @@ fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVen
 /// # Errors
 /// Returns an error if a prior or a parameter is invalid.
 pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
-    let lighting = LightingParams {
+    let lighting = LightingFilterParams {
         pixel_color_variance: params
             .pixel_color_variance
             .map_or(priors.pixel_color_variance(), Vector3::from),

@@ -2,7 +2,7 @@ use std::{sync::Arc, time::Duration};
 
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_color_map::{Camera, ColorMap};
+use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_color_model::{
     ColorDensity, ColorLocalizer, ColorLookUpTable, Fix, LightingBank, OdometryStep, PixelClassifier, Start,
     YuvImage,
@@ -11,8 +11,8 @@ use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
 
-use super::{ColorSystemParams, LabelCounts, tally};
-use crate::system::{EventCounts, PlausibleIncrement, Stopwatch, System};
+use super::{ClassificationCounts, ColorSystemParams, tally};
+use crate::system::{EventCounts, IncrementPlausibilityCheck, Stopwatch, System};
 
 /// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub struct ColorSystem {
     labels: Option<(Stamp, EncodedImage)>,
     localizer: Option<ColorLocalizer>,
     pending: Pending,
-    plausible: PlausibleIncrement,
+    plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
     frames: Vec<ColorFrameResult>,
     table: Option<ColorLookUpTable>,
@@ -71,7 +71,7 @@ pub struct ColorFrameResult {
     /// Probability of each light of the bank.
     pub light_probabilities: Vec<f64>,
     /// Classification counts, if the log has true labels.
-    pub labelled: Option<LabelCounts>,
+    pub labelled: Option<ClassificationCounts>,
     /// Computing time after decoding.
     pub step: Duration,
 }
@@ -100,7 +100,7 @@ impl ColorSystem {
             labels: None,
             localizer: None,
             pending: Pending::default(),
-            plausible: PlausibleIncrement::default(),
+            plausible: IncrementPlausibilityCheck::default(),
             odometry,
             frames: Vec::new(),
             table: None,
@@ -214,7 +214,7 @@ impl ColorSystem {
             Some(localizer) => localizer,
             none => none.insert(ColorLocalizer::new(
                 Arc::clone(&self.map),
-                Camera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
+                PinholeCamera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
                 self.bank.clone(),
                 &start(self.start, &self.params)?,
                 self.params.localizer,
@@ -231,7 +231,7 @@ impl ColorSystem {
         Ok(localizer.update(image, mount, &mut self.rng)?)
     }
 
-    fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<LabelCounts> {
+    fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<ClassificationCounts> {
         let (_, labels) = self.labels.take().filter(|(labelled, _)| *labelled == stamp)?;
         let labels = labels.decode_gray().ok()?;
         let classifier = PixelClassifier::new(self.colors()).ok()?;

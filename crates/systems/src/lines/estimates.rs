@@ -4,9 +4,9 @@ use super::{LineSystem, ScanWalls};
 use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// Writes the walls of every scan beside the records, for viewers.
-pub type LineLog = EstimateLog<LineDrawing>;
+pub type LineEstimateLog = EstimateLog<LineDrawing>;
 
-/// State of the drawing of [`LineLog`].
+/// State of the drawing of [`LineEstimateLog`].
 pub struct LineDrawing {
     n_written: usize,
     /// Number of walls of the scan before; surplus ones are overwritten with nothing.

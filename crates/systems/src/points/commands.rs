@@ -3,7 +3,7 @@ use std::collections::VecDeque;
 use wayfix_sensor_log::{Stamp, Velocity};
 use wayfix_slam_ekf::VelocityControl;
 
-use super::RobotParams;
+use super::RobotCalibrationParams;
 
 /// Velocity commands of the log, and the motion they make: later, and in shorter turns.
 ///
@@ -21,7 +21,7 @@ pub(super) struct Commands {
 const STANDING: Velocity = Velocity { linear: 0.0, angular: 0.0 };
 
 impl Commands {
-    pub(super) fn new(robot: &RobotParams) -> Self {
+    pub(super) fn new(robot: &RobotCalibrationParams) -> Self {
         Self {
             delay: nanoseconds(robot.command_delay),
             shortening: nanoseconds(robot.turn_command_shortening),
@@ -119,7 +119,7 @@ mod tests {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
     }
 
-    fn turn_of_100_ms(robot: RobotParams) -> Vec<VelocityControl> {
+    fn turn_of_100_ms(robot: RobotCalibrationParams) -> Vec<VelocityControl> {
         let mut commands = Commands::new(&robot);
         for (milliseconds, angular) in [(0, 0.0), (100, 0.5), (200, 0.0)] {
             commands.push(at(milliseconds), Velocity { linear: 0.1, angular });
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_command_holds_until_the_next() {
-        let pieces = turn_of_100_ms(RobotParams::default());
+        let pieces = turn_of_100_ms(RobotCalibrationParams::default());
         assert_eq!(pieces.len(), 3);
         assert!((turned(&pieces) - 0.05).abs() < 1e-12);
         assert!((pieces.iter().map(|piece| piece.duration).sum::<f64>() - 0.5).abs() < 1e-12);
@@ -141,8 +141,11 @@ mod tests {
 
     #[test]
     fn a_delayed_command_acts_later_and_an_eroded_turn_is_shorter() {
-        let robot =
-            RobotParams { command_delay: 0.15, turn_command_shortening: 0.04, ..RobotParams::default() };
+        let robot = RobotCalibrationParams {
+            command_delay: 0.15,
+            turn_command_shortening: 0.04,
+            ..RobotCalibrationParams::default()
+        };
         let pieces = turn_of_100_ms(robot);
         assert!((turned(&pieces) - 0.5 * 0.06).abs() < 1e-12); // 40 ms of the 100 are lost
         let before: f64 =
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn command_expires_and_the_motion_is_unknown() {
-        let mut commands = Commands::new(&RobotParams::default());
+        let mut commands = Commands::new(&RobotCalibrationParams::default());
         commands.push(at(0), Velocity { linear: 1.0, angular: 0.0 });
         let driven = |pieces: &[VelocityControl]| pieces.iter().map(|p| p.linear * p.duration).sum::<f64>();
         assert!((driven(&commands.between(at(0), at(5000))) - 1.0).abs() < 1e-12);
@@ -165,8 +168,11 @@ mod tests {
 
     #[test]
     fn forgets_only_what_no_longer_acts() {
-        let robot =
-            RobotParams { command_delay: 0.15, turn_command_shortening: 0.04, ..RobotParams::default() };
+        let robot = RobotCalibrationParams {
+            command_delay: 0.15,
+            turn_command_shortening: 0.04,
+            ..RobotCalibrationParams::default()
+        };
         let mut commands = Commands::new(&robot);
         for step in 0..100 {
             commands.push(at(10 * step), Velocity { linear: 0.1, angular: step as f64 });

@@ -4,8 +4,8 @@ use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LogError, Record, RecordData, Stamp, Velocity,
 };
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkId, MountedSensor, Observation, RangeBearing, RangeBearingSensor, ScaledMotion,
-    ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams,
+    EkfSlam, LandmarkId, MotionWithRangeScale, MountedSensor, Observation, PoseWithRangeScale, RangeBearing,
+    RangeBearingSensor, RangeBearingSensorWithScale, SlamError, SlamParams,
 };
 
 use super::{
@@ -13,12 +13,12 @@ use super::{
     sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
-    system::{EstimateWriter, MotionStatistics, PlausibleIncrement, Stopwatch, check_velocity},
+    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
 /// Points seen by a range-bearing sensor that may sit anywhere on the robot and whose scale is estimated.
-pub type PointSensor = ScaledRangeBearingSensor<MountedSensor<RangeBearingSensor>>;
+pub type PointSensor = RangeBearingSensorWithScale<MountedSensor<RangeBearingSensor>>;
 
 /// EKF-SLAM with points.
 pub type PointSystem = SlamSystem<PointFrontEnd>;
@@ -29,7 +29,7 @@ pub struct PointFrontEnd {
     pub(super) commands: Commands,
     /// How the robot has moved by its commands.
     pub(super) motion: MotionStatistics,
-    plausible: PlausibleIncrement,
+    plausible: IncrementPlausibilityCheck,
     /// The kind of odometry that came first.
     pub(super) odometry: Option<OdometryKind>,
     /// The time of the filter's state.
@@ -60,16 +60,16 @@ impl PointSystem {
         let filter_params = SlamParams { confirmation, merging, ..params.filter };
         let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
         let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
-        let sensor = ScaledRangeBearingSensor(MountedSensor { sensor: params.sensor, mount });
-        let state = ScaledPose { pose: start, log_range_scale: 0.0 };
+        let sensor = RangeBearingSensorWithScale(MountedSensor { sensor: params.sensor, mount });
+        let state = PoseWithRangeScale { pose: start, log_range_scale: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
-        let estimator = Estimator::new(filter, association, params.record_observability, start);
+        let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
         let front_end = PointFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
-            plausible: PlausibleIncrement::default(),
+            plausible: IncrementPlausibilityCheck::default(),
             odometry: None,
             params,
             time: start_stamp,
@@ -84,7 +84,7 @@ impl PointSystem {
     }
 }
 
-type Points = Estimator<PointSensor>;
+type Points = SlamEstimator<PointSensor>;
 
 impl FrontEnd for PointFrontEnd {
     type Model = PointSensor;
@@ -148,7 +148,7 @@ impl PointFrontEnd {
     ) -> Result<(), String> {
         self.plausible.check(stamp, increment)?;
         let stopwatch = Stopwatch::start();
-        estimator.predict(&ScaledMotion(self.params.increment_noise), increment)?;
+        estimator.predict(&MotionWithRangeScale(self.params.increment_noise), increment)?;
         estimator.step += stopwatch.elapsed();
         estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
         self.time = stamp;
@@ -176,7 +176,7 @@ impl PointFrontEnd {
         })?;
         estimator.step += stopwatch.elapsed();
         // The filter is at the exposure of the sensor; the estimate is at its stamp.
-        let motion = ScaledMotion(SequentialMotion(self.params.velocity_noise));
+        let motion = MotionWithRangeScale(SequentialMotion(self.params.velocity_noise));
         let (state, covariance) =
             estimator.predicted(&motion, self.commands.between(self.time, stamp).as_slice());
         let covariance = covariance.fixed_view::<3, 3>(0, 0).into_owned();
@@ -203,7 +203,7 @@ impl PointFrontEnd {
         let stopwatch = Stopwatch::start();
         let controls = self.commands.between(self.time, time);
         let motion = SequentialMotion(self.params.velocity_noise);
-        estimator.predict(&ScaledMotion(motion), controls.as_slice())?;
+        estimator.predict(&MotionWithRangeScale(motion), controls.as_slice())?;
         estimator.dead_reckoning = motion.propagate(&estimator.dead_reckoning, &controls);
         for control in &self.commands.known_between(self.time, time) {
             let moved = self.params.velocity_noise.propagate(&Pose2::identity(), control);
@@ -226,7 +226,7 @@ impl PointFrontEnd {
             "motion_unknown",
             format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_hold)"),
         );
-        let unknown = ScaledMotion(UnknownMotion(self.motion.unknown_motion(seconds)));
+        let unknown = MotionWithRangeScale(UnknownMotion(self.motion.unknown_motion(seconds)));
         estimator.filter.predict(&unknown, &()).map_err(|error| error.to_string())
     }
 

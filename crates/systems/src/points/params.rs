@@ -3,8 +3,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{LogFormat, LogMeta};
 use wayfix_slam_ekf::{
-    AckermannVehicle, ConfirmationParams, CorrelatedNoise, IncrementMotion, JointCompatibilityParams,
-    MergingParams, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
+    AckermannVehicle, CorrelatedNoise, JointCompatibilityParams, LandmarkConfirmationParams,
+    LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule, RangeBearingSensor,
+    SlamParams, VelocityMotion,
 };
 
 use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
@@ -33,7 +34,7 @@ pub struct PointSlamParams {
     /// world. For logs that have true landmarks.
     pub n_anchors: usize,
     /// Timing and calibration of the robot.
-    pub robot: RobotParams,
+    pub robot: RobotCalibrationParams,
     /// Where things sit on the robot.
     pub mounting: MountingParams,
     /// Measures of a car-like vehicle.
@@ -43,7 +44,7 @@ pub struct PointSlamParams {
     /// Noise of velocity odometry.
     pub velocity_noise: VelocityMotion,
     /// Noise of odometry increments.
-    pub increment_noise: IncrementMotion,
+    pub increment_noise: OdometryMotion,
     /// Gate and outliers; its `merging` is for landmarks that were found without identities.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
@@ -51,7 +52,7 @@ pub struct PointSlamParams {
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
-    pub unlabelled_confirmation: ConfirmationParams,
+    pub unlabelled_confirmation: LandmarkConfirmationParams,
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
@@ -76,7 +77,7 @@ pub struct MountingParams {
 /// Timing and calibration of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RobotParams {
+pub struct RobotCalibrationParams {
     /// Time from the exposure of the sensor to the stamp of what it saw, s.
     pub sensor_latency: f64,
     /// Time from the stamp of a velocity command to the motion it makes, s.
@@ -92,7 +93,7 @@ pub struct RobotParams {
     pub range_scale_sigma: f64,
 }
 
-impl Default for RobotParams {
+impl Default for RobotCalibrationParams {
     fn default() -> Self {
         Self {
             sensor_latency: 0.0,
@@ -141,24 +142,24 @@ impl PointSlamParams {
                 association: None,
                 start_pose: None,
                 n_anchors: 0,
-                robot: RobotParams::default(),
+                robot: RobotCalibrationParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),
                 sensor: RangeBearingSensor::default(),
                 velocity_noise: VelocityMotion::default(),
-                increment_noise: IncrementMotion::default(),
+                increment_noise: OdometryMotion::default(),
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
-                unlabelled_confirmation: ConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     n_detections: 3,
                     max_missed: Some(20),
-                    ..ConfirmationParams::default()
+                    ..LandmarkConfirmationParams::default()
                 },
                 record_observability: false,
             },
             RobotProfile::RangeBearing => Self {
-                increment_noise: IncrementMotion {
+                increment_noise: OdometryMotion {
                     translation_variance_per_meter: 0.0,
                     heading_variance_per_meter: 0.0,
                     heading_variance_per_radian: 0.0,
@@ -201,18 +202,18 @@ impl PointSlamParams {
                     new_landmark_nis: 60.0,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: ConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     n_detections: 8,
                     max_missed: Some(5),
                     min_detection_rate: 0.4,
-                    ..ConfirmationParams::default()
+                    ..LandmarkConfirmationParams::default()
                 },
                 ..Self::of(RobotProfile::Generic)
             }
             .named(profile),
             // Measured as residuals against truth on set 7, robots 1-3 (docs/adr/0019-parameters-of-the-utias-profile.md).
             RobotProfile::Utias => Self {
-                robot: RobotParams {
+                robot: RobotCalibrationParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
                     turn_command_shortening: 0.04,
@@ -242,7 +243,7 @@ impl PointSlamParams {
                     outlier_rule: OutlierRule::Downweight,
                     gate_probability: 0.632,
                     // The tubes of a group stand 0.18-0.3 m apart.
-                    merging: Some(MergingParams { min_separation: 0.13, n_sigmas: 2.0 }),
+                    merging: Some(LandmarkMergingParams { min_separation: 0.13, n_sigmas: 2.0 }),
                     ..SlamParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
@@ -250,10 +251,10 @@ impl PointSlamParams {
                     one_detection_per_landmark: true,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: ConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     n_detections: 8,
                     max_missed: Some(20),
-                    ..ConfirmationParams::default()
+                    ..LandmarkConfirmationParams::default()
                 },
                 ..Self::of(RobotProfile::Generic)
             }

@@ -1,6 +1,6 @@
 use std::ops::RangeInclusive;
 
-use wayfix_slam_ekf::{ConfirmationParams, JointCompatibility, NearestNeighbour, SlamError};
+use wayfix_slam_ekf::{JointCompatibility, LandmarkConfirmationParams, NearestNeighbour, SlamError};
 
 use super::PointSlamParams;
 use crate::settings::number;
@@ -45,7 +45,7 @@ impl PointSlamParams {
         let nearest_own_range_sigma =
             correlated_noise.independent_range_sigma + correlated_noise.independent_range_sigma_per_meter;
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
-        let times_seen = |confirmation: &ConfirmationParams| confirmation.n_detections as f64;
+        let times_seen = |confirmation: &LandmarkConfirmationParams| confirmation.n_detections as f64;
         for (name, value, (range, words)) in [
             number!(robot.sensor_latency, DELAY),
             number!(robot.command_delay, DELAY),

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector2};
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{RecordData, Stamp, Velocity};
-use wayfix_slam_ekf::{ScaledPose, SlamError};
+use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
 
 use super::{PointFrontEnd, PointSlamParams, PointSystem};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// A map of points.
-pub type SavedPointMap = SlamState<ScaledPose, Vector2<f64>, PointState>;
+pub type SavedPointMap = SlamState<PoseWithRangeScale, Vector2<f64>, PointState>;
 
 /// All that a [`PointFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -31,7 +31,7 @@ pub struct StampedEstimate {
 }
 
 /// EKF-SLAM with its rule of association, and what a run records of it.
-pub struct Estimator<M: LandmarkModel>
+pub struct SlamEstimator<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
@@ -45,7 +45,7 @@ where
     pub(crate) step: Duration,
 }
 
-impl<M: LandmarkModel> Estimator<M>
+impl<M: LandmarkModel> SlamEstimator<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {

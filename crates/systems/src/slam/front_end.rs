@@ -3,7 +3,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use wayfix_sensor_log::{LogError, Record, Stamp};
 use wayfix_slam_ekf::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::Estimator;
+use super::SlamEstimator;
 use crate::system::EstimateWriter;
 
 /// What turns the records of a log into predictions and updates of EKF-SLAM, for one kind of landmark.
@@ -20,13 +20,13 @@ where
     ///
     /// # Errors
     /// Returns why the record was refused; everything is as before it.
-    fn take(&mut self, record: &Record, estimator: &mut Estimator<Self::Model>) -> Result<(), String>;
+    fn take(&mut self, record: &Record, estimator: &mut SlamEstimator<Self::Model>) -> Result<(), String>;
 
     /// Uses what still waits for a later record at the end of the log.
     ///
     /// # Errors
     /// Returns why it cannot be used.
-    fn finish(&mut self, _: &mut Estimator<Self::Model>) -> Result<(), String> {
+    fn finish(&mut self, _: &mut SlamEstimator<Self::Model>) -> Result<(), String> {
         Ok(())
     }
 

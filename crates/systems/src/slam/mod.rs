@@ -20,7 +20,7 @@ pub(crate) use association::ChosenRule;
 pub(crate) use estimates::ellipse;
 pub use estimates::{SlamDrawing, SlamEstimateLog};
 pub(crate) use estimator::nis;
-pub use estimator::{Estimator, StampedEstimate};
+pub use estimator::{SlamEstimator, StampedEstimate};
 use event_name::event_name;
 pub(crate) use figures::summary;
 pub use front_end::{FrontEnd, FrontEndState};

@@ -1,7 +1,10 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
     errors::TrajectorySample,
-    plot::{AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, MapPlot, PlotError, SvgPlot, TimesPlot},
+    plot::{
+        AxisScale, ConsistencyPlot, MapPlot, PlotError, PoseErrorPlot, PoseErrorSample, StepTimesPlot,
+        SvgPlot,
+    },
 };
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
@@ -41,16 +44,16 @@ where
     Ok(plots)
 }
 
-fn errors(samples: &[(StampedEstimate, TrajectorySample)]) -> ErrorPlot {
+fn errors(samples: &[(StampedEstimate, TrajectorySample)]) -> PoseErrorPlot {
     let error_sample = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
         let sigma = stamped_estimate.covariance.diagonal().map(f64::sqrt);
-        ErrorSample {
+        PoseErrorSample {
             t: seconds(samples, stamped_estimate),
             error: sample.error().into(),
             sigma: sigma.into(),
         }
     };
-    ErrorPlot {
+    PoseErrorPlot {
         title: "Pose error in the robot frame".to_owned(),
         samples: samples.iter().map(error_sample).collect(),
     }
@@ -73,11 +76,11 @@ fn consistency(samples: &[(StampedEstimate, TrajectorySample)]) -> Option<Consis
     })
 }
 
-fn times(stamped_estimates: &[StampedEstimate]) -> TimesPlot {
+fn times(stamped_estimates: &[StampedEstimate]) -> StepTimesPlot {
     let point = |stamped_estimate: &StampedEstimate| {
         (stamped_estimate.n_landmarks as f64, stamped_estimate.step.as_secs_f64() * 1e6)
     };
-    TimesPlot {
+    StepTimesPlot {
         title: "Computing time of a step".to_owned(),
         x_label: "landmarks in the map".to_owned(),
         points: stamped_estimates.iter().map(point).collect(),

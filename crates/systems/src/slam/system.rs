@@ -6,7 +6,7 @@ use wayfix_slam_ekf::{
     SlamSnapshot, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, Estimator, FrontEnd, SavedMapError, SlamState, StampedEstimate};
+use super::{AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate};
 use crate::system::{EventCounts, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -15,7 +15,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     pub(crate) front_end: F,
-    pub(crate) estimator: Estimator<F::Model>,
+    pub(crate) estimator: SlamEstimator<F::Model>,
     /// Stamp of the last record that was taken.
     taken_until: Stamp,
     /// Records up to this stamp were taken by the run that this one goes on from.
@@ -36,7 +36,7 @@ impl<F: FrontEnd> SlamSystem<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
-    pub(crate) fn new(front_end: F, estimator: Estimator<F::Model>) -> Self {
+    pub(crate) fn new(front_end: F, estimator: SlamEstimator<F::Model>) -> Self {
         Self { front_end, estimator, taken_until: Stamp::default(), resumed_at: None }
     }
 

@@ -23,7 +23,7 @@ pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
-pub use plausible_increment::PlausibleIncrement;
+pub use plausible_increment::IncrementPlausibilityCheck;
 pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;

@@ -10,11 +10,11 @@ const JITTER: f64 = 0.01;
 
 /// Rejects odometry increments that are physically impossible.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PlausibleIncrement {
+pub struct IncrementPlausibilityCheck {
     last: Option<Stamp>,
 }
 
-impl PlausibleIncrement {
+impl IncrementPlausibilityCheck {
     /// Checks an increment that ends at `stamp` and begins at the last accepted one.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ mod tests {
     #[test]
     fn absurd_increment_is_refused_and_the_next_one_passes() {
         for x in [1e256, -1e200, f64::NAN, f64::INFINITY, 1e4] {
-            let mut plausible = PlausibleIncrement::default();
+            let mut plausible = IncrementPlausibilityCheck::default();
             plausible.check(at(0), &Pose2::new(0.1, 0.0, 0.0)).unwrap();
             let error = plausible.check(at(100), &Pose2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(error.len() < 120, "{error}");
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn increments_of_equal_stamps_pass() {
-        let mut plausible = PlausibleIncrement::default();
+        let mut plausible = IncrementPlausibilityCheck::default();
         for _ in 0..3 {
             plausible.check(at(7), &Pose2::new(1.0, 0.0, 3.0)).unwrap();
         }

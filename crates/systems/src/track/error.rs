@@ -5,7 +5,7 @@ use wayfix_visual_tracking::TrackingError;
 /// Errors of following a target.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum TrackError {
+pub enum TrackSystemError {
     /// A file cannot be read.
     #[error("cannot read {}", path.display())]
     Read {
@@ -28,7 +28,7 @@ pub enum TrackError {
         /// Line number, from 1.
         line: usize,
         /// The reason.
-        source: Box<TrackError>,
+        source: Box<TrackSystemError>,
     },
     /// A file is not a valid mask.
     #[error("{} is no mask: {reason}", path.display())]

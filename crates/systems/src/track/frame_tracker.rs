@@ -17,14 +17,14 @@ pub trait FrameTracker {
     fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Estimated;
 
     /// Colour distribution of the target, for trackers that model it.
-    fn colors(&self) -> Option<TargetColors> {
+    fn colors(&self) -> Option<TargetColorDistribution> {
         None
     }
 }
 
 /// Distribution of the target's colours in a colour space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TargetColors {
+pub struct TargetColorDistribution {
     /// The space.
     pub space: ColorSpace,
     /// Their mean, each axis scaled to [0, 1].
@@ -56,10 +56,10 @@ impl FrameTracker for ContourFrameTracker {
         self.tracker.track(picture, rng)
     }
 
-    fn colors(&self) -> Option<TargetColors> {
+    fn colors(&self) -> Option<TargetColorDistribution> {
         let colors = self.tracker.colors();
         let variances = Matrix3::from_diagonal(&colors.axis_sigmas.map(|sigma| sigma * sigma));
         let covariance = colors.axes * variances * colors.axes.transpose();
-        Some(TargetColors { space: self.space, mean: colors.mean, covariance })
+        Some(TargetColorDistribution { space: self.space, mean: colors.mean, covariance })
     }
 }

@@ -13,7 +13,7 @@
 //! }
 //! assert_eq!(score.iou_mean(), Some(0.5)); // the second frame was lost
 //! assert!(truth.at(2).is_absent() && truth.at(3).is_unknown());
-//! # Ok::<(), wayfix_systems::track::TrackError>(())
+//! # Ok::<(), wayfix_systems::track::TrackSystemError>(())
 //! ```
 
 mod error;
@@ -29,17 +29,17 @@ mod status_score;
 mod system;
 mod truth;
 
-pub use error::TrackError;
+pub use error::TrackSystemError;
 pub use figures::summarize;
-pub use frame_tracker::{FrameTracker, TargetColors};
+pub use frame_tracker::{FrameTracker, TargetColorDistribution};
 pub use method::TrackingMethod;
-pub use output::estimates::TrackLog;
+pub use output::estimates::TrackEstimateLog;
 pub use output::plots::plots;
-pub use output::run_history::RunHistory;
+pub use output::run_history::TrackRunHistory;
 pub use params::TrackParams;
 pub use run::{TrackRun, run};
 pub use score::BoxScore;
 pub use start::TargetStart;
-pub use status_score::StatusScore;
+pub use status_score::LostStatusScore;
 pub use system::{TrackFrameResult, TrackSystem, TrackerConfig};
 pub use truth::{TargetTruth, TrueBoxes, parse_box};

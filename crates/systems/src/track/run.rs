@@ -1,6 +1,6 @@
-use wayfix_sensor_log::{Log, ProblemKind, Record, RecordData};
+use wayfix_sensor_log::{Log, Record, RecordData, RowProblemKind};
 
-use super::{RunHistory, TrackError, TrackSystem};
+use super::{TrackRunHistory, TrackSystem, TrackSystemError};
 use crate::system::{RunStep, System, drive};
 
 /// Results of a tracker on a log.
@@ -8,7 +8,7 @@ pub struct TrackRun {
     /// The system in its last state.
     pub system: TrackSystem,
     /// Data kept for the pictures.
-    pub run_history: RunHistory,
+    pub run_history: TrackRunHistory,
 }
 
 /// Processes the images of a log with a tracker, one at a time, and shows each record with the system to `observe`.
@@ -19,8 +19,8 @@ pub fn run(
     mut system: TrackSystem,
     log: &mut Log,
     mut observe: impl FnMut(&TrackSystem, &Record),
-) -> Result<TrackRun, TrackError> {
-    let mut run_history = RunHistory::default();
+) -> Result<TrackRun, TrackSystemError> {
+    let mut run_history = TrackRunHistory::default();
     let mut kept = Ok(());
     drive(&mut system, log.by_ref(), |RunStep { system, record, .. }| {
         // Only image records change the frame.
@@ -34,14 +34,14 @@ pub fn run(
     }
     kept?;
     // Count unreadable frames at the end of the sequence, which no later index reveals.
-    let unreadable = log.report().problems.get(&ProblemKind::UnreadableImage).copied().unwrap_or(0);
+    let unreadable = log.report().problems.get(&RowProblemKind::UnreadableImage).copied().unwrap_or(0);
     let shown = system.events().get("frame_unreadable");
     system.pass_over(system.n_frames() + unreadable.saturating_sub(shown) as usize);
     if !system.has_begun() {
         let first = system.events().refusals().first().map(|first| format!(": {first}"));
         return Err(match first {
-            None if system.n_frames() > 0 => TrackError::NoStart,
-            because => TrackError::NoFrame { because: because.unwrap_or_default() },
+            None if system.n_frames() > 0 => TrackSystemError::NoStart,
+            because => TrackSystemError::NoFrame { because: because.unwrap_or_default() },
         });
     }
     Ok(TrackRun { system, run_history })

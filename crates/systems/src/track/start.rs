@@ -1,16 +1,16 @@
 use std::{fs, path::Path};
 
 use wayfix_sensor_log::{EncodedImage, ImageFormat};
-use wayfix_visual_tracking::{BitMask, BoundingBox, RgbImage, TrackingError};
+use wayfix_visual_tracking::{BoundingBox, PixelMask, RgbImage, TrackingError};
 
-use super::TrackError;
+use super::TrackSystemError;
 
 /// Position of the target in the first image.
 ///
 /// ```
 /// use wayfix_systems::track::TargetStart;
-/// use wayfix_visual_tracking::{BitMask, BoundingBox};
-/// let mask = BitMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
+/// use wayfix_visual_tracking::{PixelMask, BoundingBox};
+/// let mask = PixelMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
 /// assert_eq!(TargetStart::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
@@ -19,23 +19,24 @@ pub enum TargetStart {
     /// A bounding box.
     Box(BoundingBox),
     /// A mask of the target's pixels.
-    Mask(BitMask),
+    Mask(PixelMask),
 }
 
 impl TargetStart {
     /// Reads a mask from an image file: every pixel that is not black belongs to the target.
     ///
     /// # Errors
-    /// Returns [`TrackError::Read`], or [`TrackError::NotAMask`] if the file is no image or is too large.
-    pub fn read_mask(path: &Path) -> Result<Self, TrackError> {
-        let bytes = fs::read(path).map_err(|source| TrackError::Read { path: path.to_owned(), source })?;
-        let wrong = |reason: String| TrackError::NotAMask { path: path.to_owned(), reason };
+    /// Returns [`TrackSystemError::Read`], or [`TrackSystemError::NotAMask`] if the file is no image or is too large.
+    pub fn read_mask(path: &Path) -> Result<Self, TrackSystemError> {
+        let bytes =
+            fs::read(path).map_err(|source| TrackSystemError::Read { path: path.to_owned(), source })?;
+        let wrong = |reason: String| TrackSystemError::NotAMask { path: path.to_owned(), reason };
         let format = ImageFormat::of_bytes(&bytes).ok_or_else(|| wrong("it is no picture".to_owned()))?;
         let decoded =
             EncodedImage::new(format, bytes).decode_rgb().map_err(|error| wrong(error.to_string()))?;
         let (width, height) = (decoded.width as usize, decoded.height as usize);
         let is_on = |u: usize, v: usize| decoded.pixels[3 * (v * width + u)..][..3] != [0; 3];
-        BitMask::from_fn(width, height, is_on).map(Self::Mask).map_err(|error| wrong(error.to_string()))
+        PixelMask::from_fn(width, height, is_on).map(Self::Mask).map_err(|error| wrong(error.to_string()))
     }
 
     /// The bounding box of the target.

@@ -9,8 +9,8 @@ const ON_FROM: f64 = 0.5;
 /// outside the image has overlap 0.
 ///
 /// ```
-/// use wayfix_systems::track::StatusScore;
-/// let mut score = StatusScore::default();
+/// use wayfix_systems::track::LostStatusScore;
+/// let mut score = LostStatusScore::default();
 /// score.add(0.9, false); // on the target and tracked
 /// score.add(0.6, true); // on the target, called lost
 /// score.add(0.1, false); // off the target, called tracked
@@ -18,14 +18,14 @@ const ON_FROM: f64 = 0.5;
 /// assert_eq!((score.false_tracked_share(), score.false_lost_share()), (1.0, 0.5));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct StatusScore {
+pub struct LostStatusScore {
     n_off: u64,
     n_off_tracked: u64,
     n_on: u64,
     n_on_lost: u64,
 }
 
-impl StatusScore {
+impl LostStatusScore {
     /// Counts a frame with an estimate.
     pub fn add(&mut self, iou: f64, is_lost: bool) {
         if iou < OFF_BELOW {

@@ -5,8 +5,8 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_visual_tracking::{RgbImage, TargetEstimate, TrackStatus};
 
 use super::{
-    BoxScore, FrameTracker, StatusScore, TargetColors, TargetStart, TargetTruth, TrackError, TrackParams,
-    TrackingMethod, TrueBoxes,
+    BoxScore, FrameTracker, LostStatusScore, TargetColorDistribution, TargetStart, TargetTruth, TrackParams,
+    TrackSystemError, TrackingMethod, TrueBoxes,
 };
 use crate::system::{EventCounts, Stopwatch, System};
 
@@ -18,12 +18,12 @@ pub struct TrackSystem {
     setup: TrackerConfig,
     rng: ChaCha8Rng,
     tracker: Option<Box<dyn FrameTracker>>,
-    failure: Option<TrackError>,
+    failure: Option<TrackSystemError>,
     next_index: usize,
     last: Option<TrackFrameResult>,
     was_lost: bool,
     score: BoxScore,
-    status_score: StatusScore,
+    status_score: LostStatusScore,
     totals: Totals,
     events: EventCounts,
 }
@@ -59,7 +59,7 @@ pub struct TrackFrameResult {
     /// Overlap with the truth, 0 if the tracker reports the target lost; `None` without a true box.
     pub iou: Option<f64>,
     /// Colour distribution of the target, if the tracker models it.
-    pub colors: Option<TargetColors>,
+    pub colors: Option<TargetColorDistribution>,
     /// Computing time of the tracker, without decoding; zero in the first frame.
     pub step: Duration,
 }
@@ -90,7 +90,7 @@ impl TrackSystem {
             last: None,
             was_lost: false,
             score: BoxScore::default(),
-            status_score: StatusScore::default(),
+            status_score: LostStatusScore::default(),
             totals: Totals::default(),
             events,
         }
@@ -107,7 +107,7 @@ impl TrackSystem {
     }
 
     /// Error rates of the lost status so far.
-    pub fn status_score(&self) -> &StatusScore {
+    pub fn status_score(&self) -> &LostStatusScore {
         &self.status_score
     }
 
@@ -130,7 +130,7 @@ impl TrackSystem {
     }
 
     /// Takes the error that kept the tracker from starting.
-    pub(super) fn take_failure(&mut self) -> Option<TrackError> {
+    pub(super) fn take_failure(&mut self) -> Option<TrackSystemError> {
         self.failure.take()
     }
 
@@ -204,7 +204,7 @@ impl TrackSystem {
                 Ok(Some((picture, target, Duration::ZERO)))
             }
             Err(source) => {
-                self.failure = Some(TrackError::Start { init: start.name(), width, height, source });
+                self.failure = Some(TrackSystemError::Start { init: start.name(), width, height, source });
                 Err("the tracker could not begin".to_owned())
             }
         }

@@ -2,7 +2,7 @@ use std::{fs, path::Path};
 
 use wayfix_visual_tracking::BoundingBox;
 
-use super::TrackError;
+use super::TrackSystemError;
 
 /// True boxes of the target, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,17 +52,17 @@ impl TrueBoxes {
     /// A first line without a number is a header. Empty lines at the end do not count.
     ///
     /// # Errors
-    /// Returns [`TrackError::Read`], or [`TrackError::Line`] for the first line if no line is a box.
-    pub fn read(path: &Path) -> Result<Self, TrackError> {
-        let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
+    /// Returns [`TrackSystemError::Read`], or [`TrackSystemError::Line`] for the first line if no line is a box.
+    pub fn read(path: &Path) -> Result<Self, TrackSystemError> {
+        let read = fs::read(path).map_err(|source| TrackSystemError::Read { path: path.into(), source })?;
         Self::parse(&String::from_utf8_lossy(&read))
     }
 
     /// Parses the same format from a text.
     ///
     /// # Errors
-    /// Returns [`TrackError::Line`].
-    pub fn parse(text: &str) -> Result<Self, TrackError> {
+    /// Returns [`TrackSystemError::Line`].
+    pub fn parse(text: &str) -> Result<Self, TrackSystemError> {
         let text = text.trim_start_matches('\u{feff}').trim_end();
         let mut found = Self::default();
         let mut first_error = None;
@@ -72,7 +72,7 @@ impl TrueBoxes {
                 Ok(Some(target)) => TargetTruth::At(target),
                 Ok(None) => TargetTruth::Absent,
                 Err(source) => {
-                    let error = TrackError::Line { line: index + 1, source: Box::new(source) };
+                    let error = TrackSystemError::Line { line: index + 1, source: Box::new(source) };
                     if found.unusable.len() < MOST_NAMED {
                         let line: String = line.chars().take(80).collect();
                         found.unusable.push(format!("line {} {line:?}", index + 1));
@@ -124,13 +124,13 @@ impl TrueBoxes {
 /// assert_eq!(parse_box("10 20 30 40")?, parse_box("40,20,40,60,10,60,10,20")?);
 /// assert_eq!(parse_box("NaN,NaN,NaN,NaN")?, None);
 /// assert!(parse_box("10,20,30").is_err() && parse_box("10,20,30,high").is_err());
-/// # Ok::<(), wayfix_systems::track::TrackError>(())
+/// # Ok::<(), wayfix_systems::track::TrackSystemError>(())
 /// ```
 ///
 /// # Errors
-/// Returns [`TrackError::NotABox`] for another count of numbers, a non-number or a negative extent.
-pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
-    let wrong = |reason: String| TrackError::NotABox { text: text.chars().take(80).collect(), reason };
+/// Returns [`TrackSystemError::NotABox`] for another count of numbers, a non-number or a negative extent.
+pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackSystemError> {
+    let wrong = |reason: String| TrackSystemError::NotABox { text: text.chars().take(80).collect(), reason };
     let words = text.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty());
     let number = |word: &str| word.parse::<f64>().map_err(|_| wrong(format!("{word:?} is no number")));
     let numbers: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
@@ -179,7 +179,7 @@ mod tests {
             assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
         }
         for text in ["", "1,2,-3,4", "1,2,3,4,5", "one,2,3,4", "x"] {
-            assert!(matches!(parse_box(text), Err(TrackError::NotABox { .. })), "{text:?}");
+            assert!(matches!(parse_box(text), Err(TrackSystemError::NotABox { .. })), "{text:?}");
         }
     }
 
@@ -192,7 +192,7 @@ mod tests {
         let doubt = truth.unusable_lines_message().unwrap();
         assert!(doubt.contains("2 of 4") && doubt.contains("line 2") && doubt.contains("line 4"), "{doubt}");
         let error = TrueBoxes::parse("1,2,3\n4,5,6\n").unwrap_err();
-        assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
+        assert!(matches!(error, TrackSystemError::Line { line: 1, .. }), "{error}");
         assert!(TrueBoxes::parse("x,y,w,h\n1,2,3,4").unwrap().at(0).target().is_some());
     }
 

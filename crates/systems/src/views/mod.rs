@@ -6,7 +6,7 @@
 //! [`compare_choices`] compute further metrics.
 //!
 //! ```
-//! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup, ViewsParams};
+//! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams};
 //! use wayfix_condensation::Picture;
 //! let pixel = |i: usize| {
 //!     let (x, y) = ((i % 160) as f64, (i / 160) as f64);
@@ -14,7 +14,7 @@
 //! };
 //! let learned = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(pixel).collect())?;
 //! let real = SceneChange::default().of(&learned)?; // other light, some pixels aside
-//! let setup = ViewSetup { view: 64, step: 16, feature: DescriptorKind::Joined, normalization: LightNormalization::WholeScene };
+//! let setup = ViewSystemConfig { view: 64, step: 16, feature: DescriptorKind::Joined, normalization: LightNormalization::WholeScene };
 //! let run = views::run(&learned, &real, &setup, &ViewsParams::default(), 10, 1, &|| ())?;
 //! assert!(run.trials.iter().filter(|trial| trial.succeeded()).count() >= 9);
 //! # Ok::<(), views::ViewsError>(())
@@ -48,4 +48,4 @@ pub use scenes::real_scene::SceneChange;
 pub use scenes::register::mean_shift;
 pub use scenes::scene::{SceneImage, read_scene};
 pub use statistics::p_value_metrics;
-pub use system::{ViewSetup, ViewSystem, ViewTrial, ViewTrialStep};
+pub use system::{ViewSystem, ViewSystemConfig, ViewTrial, ViewTrialStep};

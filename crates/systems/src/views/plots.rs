@@ -5,7 +5,7 @@ use wayfix_condensation::{Picture as Pixels, PositionGrid};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
 use super::{ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
-use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinesPlot, PlotSeries, SvgPlot};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 
 /// Moves after which the belief is shown, besides the last.
 const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
@@ -120,7 +120,7 @@ fn scenes(learned: &Pixels, real: &Pixels) -> Result<SvgPlot> {
 }
 
 /// Growth of the belief in the true place over the drives.
-fn certainty(trials: &[ViewTrial]) -> LinesPlot {
+fn certainty(trials: &[ViewTrial]) -> LinePlot {
     let n_moves = trials.iter().map(|trial| trial.belief_in_truth.len()).max().unwrap_or(0);
     // A finished drive keeps its last value.
     let at = |trial: &ViewTrial, moves: usize| {
@@ -134,7 +134,7 @@ fn certainty(trials: &[ViewTrial]) -> LinesPlot {
         };
         (0..n_moves).map(of).collect()
     };
-    LinesPlot {
+    LinePlot {
         title: "How many drives believe in the true place".to_owned(),
         x_label: "moves".to_owned(),
         y_label: "share of the drives".to_owned(),
@@ -143,6 +143,6 @@ fn certainty(trials: &[ViewTrial]) -> LinesPlot {
             PlotSeries::new("above 0.9", share(0.9)),
             PlotSeries::new("above 0.999", share(0.999)),
         ],
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }

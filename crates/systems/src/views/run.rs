@@ -3,7 +3,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use wayfix_condensation::Picture;
 
-use super::{ViewSetup, ViewSystem, ViewTrial, ViewsError, ViewsParams};
+use super::{ViewSystem, ViewSystemConfig, ViewTrial, ViewsError, ViewsParams};
 use crate::system::Stopwatch;
 
 /// Drives between random places of a learned scene.
@@ -28,7 +28,7 @@ pub struct ViewsRun {
 pub fn run(
     learned: &Picture,
     real: &Picture,
-    setup: &ViewSetup,
+    setup: &ViewSystemConfig,
     params: &ViewsParams,
     n_trials: u64,
     seed: u64,

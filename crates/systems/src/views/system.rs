@@ -17,7 +17,7 @@ const SLIPS: u64 = 1 << 32;
 
 /// Division of a scene into views, and the feature measured in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ViewSetup {
+pub struct ViewSystemConfig {
     /// Width and height of a view, pixels.
     pub view: usize,
     /// Pixels between neighbouring views.
@@ -74,7 +74,7 @@ impl ViewSystem {
     pub fn learn(
         learned: &Picture,
         real: &Picture,
-        setup: &ViewSetup,
+        setup: &ViewSystemConfig,
         params: &ViewsParams,
     ) -> Result<Self, ViewsError> {
         let size = |picture: &Picture| (picture.width(), picture.height());

@@ -16,8 +16,8 @@ use super::{
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
-    system::{EstimateWriter, EventCounts, PlausibleIncrement, Stopwatch, check_velocity},
+    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -41,7 +41,7 @@ pub struct WallFrontEnd {
     pub(super) current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places the laser, and not the parameters.
     pub(super) laser_follows_log: bool,
-    plausible: PlausibleIncrement,
+    plausible: IncrementPlausibilityCheck,
     /// Scans that wait for the odometry that leads up to them, oldest first.
     pub(super) waiting: VecDeque<WaitingScan>,
     /// Heading by the points of the last scan alone, seen from the last look, rad.
@@ -74,7 +74,7 @@ impl WallSystem {
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.heading_drift_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
-        let estimator = Estimator::new(filter, association, params.record_observability, start);
+        let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
         let front_end = WallFrontEnd {
             extractor: LineExtractor::new(params.line_extraction)?,
             matcher: params.match_scans.then(|| ScanMatcher::new(params.scan_match)).transpose()?,
@@ -85,7 +85,7 @@ impl WallSystem {
             odometry: OdometryBetweenScans::default(),
             current_laser_mount: None,
             laser_follows_log: false,
-            plausible: PlausibleIncrement::default(),
+            plausible: IncrementPlausibilityCheck::default(),
             waiting: VecDeque::new(),
             laser_heading: None,
             seen_turns: Vec::new(),
@@ -100,7 +100,7 @@ impl WallSystem {
 }
 
 /// The estimator of this front end.
-pub(super) type Walls = Estimator<WallModel>;
+pub(super) type Walls = SlamEstimator<WallModel>;
 
 impl FrontEnd for WallFrontEnd {
     type Model = WallModel;

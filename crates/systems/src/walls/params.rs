@@ -5,8 +5,8 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_scan_match::ScanMatchParams;
 use wayfix_slam_ekf::{
-    ConfirmationParams, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint,
-    NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
+    JointCompatibility, JointCompatibilityParams, LandmarkConfirmationParams, LinearizationPoint,
+    NearestNeighbour, NearestNeighbourParams, OdometryMotion, SlamError, SlamParams, WallSensor,
 };
 
 use crate::settings::number;
@@ -59,7 +59,7 @@ pub struct WallSlamParams {
     /// Whether the motion of the laser during a scan is taken out, where the log says the time from beam to beam.
     pub deskew_scans: bool,
     /// Noise of odometry increments.
-    pub increment_noise: IncrementMotion,
+    pub increment_noise: OdometryMotion,
     /// Gate and outliers.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
@@ -122,18 +122,18 @@ impl Default for WallSlamParams {
             velocity_hold: VELOCITY_HOLD,
             odometry_delay: 0.0,
             deskew_scans: true,
-            increment_noise: IncrementMotion {
+            increment_noise: OdometryMotion {
                 translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
                 heading_variance_per_radian: 3e-2,
-                ..IncrementMotion::default()
+                ..OdometryMotion::default()
             },
             filter: SlamParams {
                 linearization_point: LinearizationPoint::FirstEstimates,
-                confirmation: ConfirmationParams {
+                confirmation: LandmarkConfirmationParams {
                     n_detections: 3,
                     max_missed: Some(10),
-                    ..ConfirmationParams::default()
+                    ..LandmarkConfirmationParams::default()
                 },
                 ..SlamParams::default()
             },

@@ -2,7 +2,7 @@ use nalgebra::{Matrix1, Matrix3, Matrix4, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
 use wayfix_scan_match::ScanAlignment;
-use wayfix_slam_ekf::{DriftingPose, IncrementMotion};
+use wayfix_slam_ekf::{DriftingPose, OdometryMotion};
 
 use super::OdometryNoisePerScan;
 
@@ -39,7 +39,7 @@ const SMALLEST_SIGMA: f64 = 1e-3;
 
 impl RelativeMotion {
     /// One increment more, of odometry that turns by `drift` rad/m without turning.
-    pub(super) fn then(&self, noise: &IncrementMotion, drift: f64, increment: &Pose2<f64>) -> Self {
+    pub(super) fn then(&self, noise: &OdometryMotion, drift: f64, increment: &Pose2<f64>) -> Self {
         let distance = increment.translation.norm();
         let moved = Pose2::new(increment.x(), increment.y(), increment.heading() + drift * distance);
         let carry = noise.jacobian(&self.motion, &moved);
@@ -181,7 +181,7 @@ mod tests {
     /// Drift and way, corrected one after the other as the system does, are what conditioning their joint Gaussian at once gives.
     #[test]
     fn a_match_corrects_drift_and_way_as_one_gaussian() {
-        let noise = IncrementMotion { heading_variance_per_meter: 0.01, ..IncrementMotion::default() };
+        let noise = OdometryMotion { heading_variance_per_meter: 0.01, ..OdometryMotion::default() };
         let increments = [(0.3, 0.1), (0.4, -0.3), (0.2, 0.5)].map(|(x, turn)| Pose2::new(x, 0.02, turn));
         let relative_motion = increments.iter().fold(RelativeMotion::default(), |relative_motion, step| {
             relative_motion.then(&noise, 0.02, step)
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn standstill_of_odometry_is_no_certain_standstill() {
-        let still = RelativeMotion::default().then(&IncrementMotion::default(), 0.1, &Pose2::identity());
+        let still = RelativeMotion::default().then(&OdometryMotion::default(), 0.1, &Pose2::identity());
         let OdometryNoisePerScan { translation_sigma, heading_sigma } = OdometryNoisePerScan::default();
         let covariance = still.with_odometry_noise_per_scan(&OdometryNoisePerScan::default()).covariance;
         assert!(covariance.m11 >= translation_sigma.powi(2) && covariance.m33 >= heading_sigma.powi(2));

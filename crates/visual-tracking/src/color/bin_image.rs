@@ -29,7 +29,7 @@ impl ColorBinImage {
     /// The bins of a picture.
     ///
     /// # Errors
-    /// Returns [`TrackingError::Extent`] if the picture has no pixels, or more than a [`BitMask`](crate::BitMask) may have.
+    /// Returns [`TrackingError::Extent`] if the picture has no pixels, or more than a [`PixelMask`](crate::PixelMask) may have.
     pub fn new(quantizer: &ColorQuantizer, picture: &RgbImage) -> Result<Self, TrackingError> {
         Self::within(quantizer, picture, &PixelRect::whole(picture))
     }

@@ -1,6 +1,6 @@
 use super::{ColorBinImage, ColorBinSet, ColorQuantizer};
 use crate::error::{check_size, checked, probability};
-use crate::{BitMask, TrackingError};
+use crate::{PixelMask, TrackingError};
 
 /// Number of pixels per colour bin, as counts or as a blend of counts.
 /// ```
@@ -38,7 +38,7 @@ impl ColorHistogram {
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if image and mask differ in size.
-    pub fn of_mask(image: &ColorBinImage, mask: &BitMask) -> Result<Self, TrackingError> {
+    pub fn of_mask(image: &ColorBinImage, mask: &PixelMask) -> Result<Self, TrackingError> {
         mask.check_size((image.width(), image.height()))?;
         Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
     }

@@ -2,14 +2,14 @@
 
 use super::{ColorBinImage, ColorBinSet};
 use crate::error::check_size;
-use crate::{BitMask, TrackingError};
+use crate::{PixelMask, TrackingError};
 
 impl ColorBinImage {
     /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto & Sanfeliu, Sec. 3.3]
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if the set has another number of bins.
-    pub fn segment(&self, set: &ColorBinSet) -> Result<BitMask, TrackingError> {
+    pub fn segment(&self, set: &ColorBinSet) -> Result<PixelMask, TrackingError> {
         check_size("set of bins", self.n_bins(), set.n_bins())?;
         // A byte per bin allows a faster look-up than a bit.
         let mut on = vec![0_u8; self.n_bins()];
@@ -19,7 +19,7 @@ impl ColorBinImage {
             bits.fold(0, |word, bit| word | bit)
         };
         let words = self.rows().flat_map(|row| row.chunks(64).map(word)).collect();
-        Ok(BitMask::from_words(self.width(), self.height(), words))
+        Ok(PixelMask::from_words(self.width(), self.height(), words))
     }
 
     /// [`segment`](Self::segment) for many sets at once, in one pass over the image for every 64 of them.
@@ -27,7 +27,7 @@ impl ColorBinImage {
     /// One look-up gives the membership of a pixel's bin in 64 sets. 64 pixels give a square of bits; its transpose holds one word of every mask.
     /// # Errors
     /// Returns the errors of [`segment`](Self::segment).
-    pub fn segment_all(&self, sets: &[ColorBinSet]) -> Result<Vec<BitMask>, TrackingError> {
+    pub fn segment_all(&self, sets: &[ColorBinSet]) -> Result<Vec<PixelMask>, TrackingError> {
         for set in sets {
             check_size("set of bins", self.n_bins(), set.n_bins())?;
         }
@@ -46,8 +46,9 @@ impl ColorBinImage {
                     words.iter_mut().zip(square).for_each(|(mask, word)| mask[i] = word);
                 }
             }
-            masks
-                .extend(words.into_iter().map(|mask| BitMask::from_words(self.width(), self.height(), mask)));
+            masks.extend(
+                words.into_iter().map(|mask| PixelMask::from_words(self.width(), self.height(), mask)),
+            );
         }
         Ok(masks)
     }

@@ -6,7 +6,7 @@ use super::hypotheses::samples::Samples;
 use super::scene::Scene;
 use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};
-use crate::{BitMask, ColorBinSet, ColorCloud, ColorState, Outline, RgbImage, TrackStatus, TrackingError};
+use crate::{ColorBinSet, ColorCloud, ColorState, Outline, PixelMask, RgbImage, TrackStatus, TrackingError};
 
 /// Result of a search for the target, and the data to learn from it.
 pub(super) struct Found {
@@ -88,7 +88,7 @@ impl ContourTracker {
         candidate: Candidate,
         state: &ColorState,
         set: &ColorBinSet,
-        mask: &BitMask,
+        mask: &PixelMask,
         samples: Samples,
     ) -> Result<Found, TrackingError> {
         let larger = candidate.regrown(scene, mask)?;

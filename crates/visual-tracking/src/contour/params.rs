@@ -1,5 +1,5 @@
 use crate::error::{checked, probability};
-use crate::{ColorSpace, ColorVector, SnakeParams, TrackingError};
+use crate::{ColorSpace, ColorStateVector, SnakeParams, TrackingError};
 
 /// Cues that a [`ContourTracker`](crate::ContourTracker) uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -167,7 +167,7 @@ impl ContourTrackerParams {
         self.snake.validate()
     }
 
-    pub(super) fn noise(&self) -> ColorVector {
-        ColorVector::from(self.color_state_noise)
+    pub(super) fn noise(&self) -> ColorStateVector {
+        ColorStateVector::from(self.color_state_noise)
     }
 }

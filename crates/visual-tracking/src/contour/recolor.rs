@@ -1,7 +1,7 @@
 use super::{TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::StructuringElement;
 use crate::picture::rgb_pixels;
-use crate::{BitMask, ColorBinSet, ColorCloud, TrackingError};
+use crate::{ColorBinSet, ColorCloud, PixelMask, TrackingError};
 
 /// Share of the expected area that the pixels of a new colour set must have.
 const LEAST_SHARE: f64 = 0.25;
@@ -18,7 +18,7 @@ impl Scene<'_> {
         &self,
         candidate: &Candidate,
         set: &ColorBinSet,
-        mask: &BitMask,
+        mask: &PixelMask,
     ) -> Result<Option<ColorCloud>, TrackingError> {
         let inside = self.interior(candidate, mask)?;
         let n_expected = LEAST_SHARE * self.expected_area;
@@ -39,7 +39,7 @@ impl Scene<'_> {
     }
 
     /// Bin and colour of every pixel of a mask of the region.
-    pub(super) fn colors_in(&self, mask: &BitMask) -> impl Iterator<Item = (u16, [f64; 3])> {
+    pub(super) fn colors_in(&self, mask: &PixelMask) -> impl Iterator<Item = (u16, [f64; 3])> {
         let ((left, top), width) = (self.region.rect.corner(), self.picture.width() as usize);
         let pixels = mask.runs().flat_map(|(v, run)| run.map(move |u| (u, v)));
         pixels.map(move |(u, v)| {
@@ -50,7 +50,11 @@ impl Scene<'_> {
     }
 
     /// The pixels inside a candidate but for its rim.
-    pub(super) fn interior(&self, candidate: &Candidate, mask: &BitMask) -> Result<BitMask, TrackingError> {
+    pub(super) fn interior(
+        &self,
+        candidate: &Candidate,
+        mask: &PixelMask,
+    ) -> Result<PixelMask, TrackingError> {
         let inside = match self.params.cues {
             TrackingCues::Color => mask.clone(),
             _ => self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?,

@@ -1,6 +1,6 @@
 use super::{SegmentationAgreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::StructuringElement;
-use crate::{BitMask, ColorEdges, SnakeParams, TrackingError};
+use crate::{ColorEdges, PixelMask, SnakeParams, TrackingError};
 
 /// Overlap of contour and segmentation from which on both count as consistent.
 pub(super) const COVERED: f64 = 0.7;
@@ -11,7 +11,7 @@ const AREA_SLACK: f64 = 0.05;
 impl Candidate {
     /// Refines the candidate on the image edges near the boundary of its mask: the snake fitted to $`∇I · \mathrm{dil}(∇S)`$. The candidate
     /// is unchanged if there is too little of an edge, or if the area would agree less.
-    pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &BitMask) -> Self {
+    pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &PixelMask) -> Self {
         let params = scene.params;
         if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
             return self;
@@ -35,7 +35,7 @@ impl Candidate {
 
 impl Scene<'_> {
     /// Confidence in a candidate, from 0 to 1: the score of its agreement, reduced if contour and segmentation do not overlap.
-    pub(super) fn confidence(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, TrackingError> {
+    pub(super) fn confidence(&self, candidate: &Candidate, mask: &PixelMask) -> Result<f64, TrackingError> {
         let score = candidate.agreement.score(self.params);
         if self.params.cues != TrackingCues::ColorAndShape {
             return Ok(score);
@@ -44,7 +44,7 @@ impl Scene<'_> {
     }
 
     /// Overlap of a candidate's contour and the segmentation.
-    pub(super) fn coverage(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, TrackingError> {
+    pub(super) fn coverage(&self, candidate: &Candidate, mask: &PixelMask) -> Result<f64, TrackingError> {
         let inside = self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?;
         inside.iou(mask)
     }

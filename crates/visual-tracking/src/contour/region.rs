@@ -1,5 +1,5 @@
 use crate::PixelRect;
-use crate::{BitMask, BoundingBox, ColorBinImage, ColorBinSet, ColorQuantizer, RgbImage, TrackingError};
+use crate::{BoundingBox, ColorBinImage, ColorBinSet, ColorQuantizer, PixelMask, RgbImage, TrackingError};
 
 /// A part of a picture with the bins of its pixels.
 pub(super) struct Region {
@@ -34,14 +34,14 @@ impl Region {
     }
 
     /// The pixels inside an outline.
-    pub(super) fn inside(&self, outline: &[[f64; 2]]) -> Result<BitMask, TrackingError> {
+    pub(super) fn inside(&self, outline: &[[f64; 2]]) -> Result<PixelMask, TrackingError> {
         let (left, top) = (self.rect.left as f64, self.rect.top as f64);
         let points: Vec<[f64; 2]> = outline.iter().map(|[u, v]| [u - left, v - top]).collect();
-        BitMask::from_polygon(self.rect.width, self.rect.height, &points)
+        PixelMask::from_polygon(self.rect.width, self.rect.height, &points)
     }
 
     /// For every bin, the share of the pixels of a mask that are in it; all 0 for a mask without pixels.
-    pub(super) fn shares(&self, mask: &BitMask) -> Vec<f32> {
+    pub(super) fn shares(&self, mask: &PixelMask) -> Vec<f32> {
         let mut counts = vec![0_f32; self.bins.n_bins()];
         let n_pixels = mask.area();
         for (v, row) in self.bins.rows().enumerate() {
@@ -56,7 +56,7 @@ impl Region {
     }
 
     /// The pixels of a set of bins.
-    pub(super) fn segment(&self, set: &ColorBinSet) -> BitMask {
+    pub(super) fn segment(&self, set: &ColorBinSet) -> PixelMask {
         self.bins.segment(set).expect("invariant: one quantizer for all")
     }
 }

@@ -1,7 +1,7 @@
 use super::{
     TrackingCues, hypotheses::candidate::Candidate, recolor::SEEN_ALL_ROUND, refine::COVERED, scene::Scene,
 };
-use crate::{BitMask, TrackingError};
+use crate::{PixelMask, TrackingError};
 
 /// Support and overlap from which on a larger contour is beyond doubt.
 const BEYOND_DOUBT: f64 = 0.9;
@@ -15,7 +15,7 @@ impl Candidate {
     /// A quick change of light can exclude a part of the target. The contour then fits the edge of the light, and its area becomes the
     /// expected one, so it stays there after the light is even again. Signs of this are a side without an edge and a blob that continues beyond
     /// it. Other objects of the target's colours beside it do not match its shape.
-    pub(super) fn regrown(&self, scene: &Scene<'_>, mask: &BitMask) -> Result<Option<Self>, TrackingError> {
+    pub(super) fn regrown(&self, scene: &Scene<'_>, mask: &PixelMask) -> Result<Option<Self>, TrackingError> {
         let blob = mask.area() as f64;
         let may_have_shrunk = scene.params.cues == TrackingCues::ColorAndShape
             && self.agreement.affine < SEEN_ALL_ROUND
@@ -36,7 +36,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
-    use crate::{BitMask, ContourTracker, RgbImage, Tracker};
+    use crate::{ContourTracker, PixelMask, RgbImage, Tracker};
 
     const SIZE: (usize, usize) = (140, 110);
 
@@ -54,7 +54,7 @@ mod tests {
         let picture =
             RgbImage::from_raw(SIZE.0 as u32, SIZE.1 as u32, (0..SIZE.0 * SIZE.1).flat_map(pixel).collect())
                 .expect("3 bytes a pixel");
-        let mask = |f: &dyn Fn(usize, usize) -> bool| BitMask::from_fn(SIZE.0, SIZE.1, f).expect("size");
+        let mask = |f: &dyn Fn(usize, usize) -> bool| PixelMask::from_fn(SIZE.0, SIZE.1, f).expect("size");
         let mut tracker =
             ContourTracker::from_mask(&picture, &mask(&start), Default::default()).expect("a target");
         let mut rng = ChaCha8Rng::seed_from_u64(1);
@@ -62,7 +62,7 @@ mod tests {
             tracker.track(&picture, &mut rng).expect("the size of the first");
         }
         let outline = tracker.snake().outline();
-        let contour = BitMask::from_polygon(SIZE.0, SIZE.1, outline.points()).expect("size");
+        let contour = PixelMask::from_polygon(SIZE.0, SIZE.1, outline.points()).expect("size");
         contour.iou(&mask(&truth)).expect("size")
     }
 

@@ -1,7 +1,7 @@
 use super::{ContourTrackerParams, reference::Reference, region::Region};
 use crate::StructuringElement;
 use crate::{
-    AffineMap, BitMask, ColorBinSet, ColorQuantizer, ColorState, Connectivity, RgbImage, TrackingError,
+    AffineMap, ColorBinSet, ColorQuantizer, ColorState, PixelConnectivity, PixelMask, RgbImage, TrackingError,
 };
 
 /// Data shared by all hypotheses about one image.
@@ -14,7 +14,7 @@ pub(super) struct Scene<'a> {
     /// Initial map of the snake.
     pub(super) start: AffineMap,
     /// The pixels that the target is expected to cover.
-    pub(super) expected: BitMask,
+    pub(super) expected: PixelMask,
     pub(super) expected_area: f64,
     /// For every bin, the share that it must exceed among the colours of the target.
     pub(super) background: Vec<f32>,
@@ -81,8 +81,8 @@ impl<'a> Scene<'a> {
 
     /// The target in the segmentation by a set of bins: the blob with the largest overlap with the expected position, and those whose centre
     /// lies in the expected target.
-    pub(super) fn target_mask(&self, set: &ColorBinSet) -> Option<BitMask> {
-        let blobs = self.segment(set).blobs(Connectivity::Eight);
+    pub(super) fn target_mask(&self, set: &ColorBinSet) -> Option<PixelMask> {
+        let blobs = self.segment(set).blobs(PixelConnectivity::Eight);
         let main = blobs.most_overlapping(&self.expected).expect("invariant: one region for all")?;
         let mut index = 0..;
         let mask = blobs.filtered(|blob| {
@@ -93,7 +93,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The pixels of a set of bins, after closing and opening.
-    pub(super) fn segment(&self, set: &ColorBinSet) -> BitMask {
+    pub(super) fn segment(&self, set: &ColorBinSet) -> PixelMask {
         let mask = self.region.segment(set);
         match self.params.morphology_radius {
             0 => mask,

@@ -3,8 +3,8 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use super::scene::{LEAST_PIXELS, Scene};
 use super::{ContourTrackerParams, hypotheses::candidate::Candidate, reference::Reference, region::Region};
 use crate::{
-    AffineMap, AffineSnake, BitMask, ColorQuantizer, ColorSpace, ColorState, Connectivity, PrincipalColors,
-    RgbImage, TrackingError,
+    AffineMap, AffineSnake, ColorQuantizer, ColorSpace, ColorState, PixelConnectivity, PixelMask,
+    PrincipalColors, RgbImage, TrackingError,
 };
 
 /// Allowed ratio of the area to the previous one, for a target found again.
@@ -22,7 +22,7 @@ const MAX_BLOBS: usize = 4;
 /// A blob that may be the target.
 pub(super) struct BlobCandidate {
     pub(super) candidate: Candidate,
-    pub(super) mask: BitMask,
+    pub(super) mask: PixelMask,
     pub(super) score: f64,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Scene<'a> {
         reference: &'a Reference,
     ) -> Result<Self, TrackingError> {
         let region = Region::whole(picture, quantizer)?;
-        let everywhere = BitMask::full(picture.width() as usize, picture.height() as usize)?;
+        let everywhere = PixelMask::full(picture.width() as usize, picture.height() as usize)?;
         let mut background = region.shares(&everywhere);
         background.iter_mut().for_each(|share| *share *= params.background_odds as f32);
         Ok(Self {
@@ -53,7 +53,7 @@ impl<'a> Scene<'a> {
 
     /// The best blob of a hypothesis, anywhere, by its score times the similarity of its colours.
     pub(super) fn find(&self, state: &ColorState) -> Option<BlobCandidate> {
-        let blobs = self.segment(&self.bin_set(state)).blobs(Connectivity::Eight);
+        let blobs = self.segment(&self.bin_set(state)).blobs(PixelConnectivity::Eight);
         let ratio = |area: usize| area as f64 / self.expected_area;
         let mut near: Vec<(usize, f64)> = blobs
             .iter()
@@ -77,7 +77,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Fits the snake to a blob from each of the [`placements`].
-    pub(super) fn placed_on(&self, mask: &BitMask) -> Option<Candidate> {
+    pub(super) fn placed_on(&self, mask: &PixelMask) -> Option<Candidate> {
         let fitted = placements(&self.reference.snake, mask, self.region.rect.corner());
         let fitted = fitted.iter().map(|start| Candidate::of_mask(self, start, mask));
         fitted.reduce(|best, other| if self.score(&other) > self.score(&best) { other } else { best })
@@ -86,7 +86,7 @@ impl<'a> Scene<'a> {
 
 /// Initial maps of a snake on a blob of a region with this corner: centred, of equal area, with unchanged orientation; and with the axes
 /// aligned with those of the blob, in both directions, stretched like the blob within bounds.
-fn placements(snake: &AffineSnake, mask: &BitMask, corner: (usize, usize)) -> Vec<AffineMap> {
+fn placements(snake: &AffineSnake, mask: &PixelMask, corner: (usize, usize)) -> Vec<AffineMap> {
     let last = snake.map();
     let scale = (mask.area() as f64 / snake.area_at(last)).sqrt();
     let [u, v] = mask.centroid().unwrap_or_default();
@@ -153,10 +153,10 @@ mod tests {
         let inside = |u: usize, v: usize| {
             ((u as f64 + 0.5 - 90.0) / 18.0).powi(2) + ((v as f64 + 0.5 - 60.0) / 30.0).powi(2) < 1.0
         };
-        let blob = BitMask::from_fn(140, 120, inside).unwrap();
+        let blob = PixelMask::from_fn(140, 120, inside).unwrap();
         let overlap = |map: &AffineMap| {
             let outline = snake.outline_at(map).unwrap();
-            BitMask::from_polygon(140, 120, outline.points()).unwrap().iou(&blob).unwrap()
+            PixelMask::from_polygon(140, 120, outline.points()).unwrap().iou(&blob).unwrap()
         };
         let [as_it_is, aligned, turned_back] = placements(&snake, &blob, (0, 0))[..] else {
             panic!("three ways")

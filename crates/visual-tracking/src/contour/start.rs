@@ -7,8 +7,8 @@ use crate::StructuringElement;
 use crate::error::check_size;
 use crate::picture::rgb_pixels;
 use crate::{
-    AffineSnake, BitMask, BoundingBox, ColorBinSet, ColorCloud, ColorDynamics, ColorQuantizer, Connectivity,
-    Outline, RgbImage, TrackStatus, TrackingError,
+    AffineSnake, BoundingBox, ColorBinSet, ColorCloud, ColorDynamics, ColorQuantizer, Outline,
+    PixelConnectivity, PixelMask, RgbImage, TrackStatus, TrackingError,
 };
 
 /// Number of corners of the ellipse used for a target of unknown shape.
@@ -39,7 +39,7 @@ impl ContourTracker {
         let dynamics = ColorDynamics::constant_velocity(params.velocity_retention, &params.noise())?;
         let snake = AffineSnake::new(outline, &params.snake)?;
         let size = (picture.width() as usize, picture.height() as usize);
-        let inside = BitMask::from_polygon(size.0, size.1, outline.points())?;
+        let inside = PixelMask::from_polygon(size.0, size.1, outline.points())?;
         let of_target =
             rgb_pixels(picture).iter().enumerate().filter(|(i, _)| inside.get(i % size.0, i / size.0));
         let colors = of_target.map(|(_, pixel)| params.color_space.convert(*pixel));
@@ -56,7 +56,7 @@ impl ContourTracker {
     /// Returns the errors of [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] if mask and image differ in size.
     pub fn from_mask(
         picture: &RgbImage,
-        mask: &BitMask,
+        mask: &PixelMask,
         params: ContourTrackerParams,
     ) -> Result<Self, TrackingError> {
         check_size("width of the mask", picture.width() as usize, mask.width())?;
@@ -100,17 +100,17 @@ fn outline_in_box(
     let limb = (LIMB * (bounds.width() * bounds.height()).sqrt()).max(1.0) as usize;
     let closed = region.segment(&set).and(&box_mask)?.closed(StructuringElement::Square { radius: 2 });
     let blobs = closed
-        .without_holes(Connectivity::Eight)
+        .without_holes(PixelConnectivity::Eight)
         .opened(StructuringElement::Square { radius: limb })
-        .blobs(Connectivity::Eight);
+        .blobs(PixelConnectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     let body = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner())).and_then(without_notches);
     Ok(body.filter(|body| body.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
 }
 
 /// The outline of the largest blob of a full-size mask.
-fn outline_of_mask(mask: &BitMask) -> Result<Outline, TrackingError> {
-    let blobs = mask.blobs(Connectivity::Eight);
+fn outline_of_mask(mask: &PixelMask) -> Result<Outline, TrackingError> {
+    let blobs = mask.blobs(PixelConnectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     blob.and_then(|blob| Outline::of_mask(&blob, (0, 0)))
         .ok_or(TrackingError::Empty { what: "target in the mask" })

@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::{ColorState, ColorWarp, PrincipalColors};
+use super::{AffineColorMap, ColorState, PrincipalColors};
 use crate::TrackingError;
 use crate::error::checked;
 
@@ -123,7 +123,7 @@ impl ColorCloud {
     }
 
     /// Every point where `warp` carries it, with its number of pixels.
-    pub fn warped<'a>(&'a self, warp: &'a ColorWarp) -> impl Iterator<Item = (Vector3<f64>, f64)> + 'a {
+    pub fn warped<'a>(&'a self, warp: &'a AffineColorMap) -> impl Iterator<Item = (Vector3<f64>, f64)> + 'a {
         self.points.iter().zip(&self.counts).map(|(point, count)| (warp.apply(point), *count))
     }
 }

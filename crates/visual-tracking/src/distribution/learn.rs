@@ -1,6 +1,6 @@
 use nalgebra::{Cholesky, SMatrix};
 
-use super::{COLOR_DIM, ColorDynamics, ColorVector};
+use super::{COLOR_DIM, ColorDynamics, ColorStateVector};
 use crate::TrackingError;
 
 type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
@@ -28,7 +28,7 @@ impl ColorDynamics {
     /// # Errors
     /// Returns [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
     /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for a sequence that leaves something open.
-    pub fn learn(series: &[ColorVector], ridge: f64) -> Result<LearnedDynamics, TrackingError> {
+    pub fn learn(series: &[ColorStateVector], ridge: f64) -> Result<LearnedDynamics, TrackingError> {
         crate::error::checked("ridge", ridge, ridge.is_finite() && ridge >= 0.0, "finite, not negative")?;
         if series.len() < 2 + 2 * COLOR_DIM {
             return Err(TrackingError::Empty { what: "training sequence of 18 states" });
@@ -67,7 +67,7 @@ impl ColorDynamics {
 }
 
 /// $`[\mathbf x; \dot{\mathbf x}]`$.
-fn regressor(before: &ColorVector, now: &ColorVector) -> SMatrix<f64, 16, 1> {
+fn regressor(before: &ColorStateVector, now: &ColorStateVector) -> SMatrix<f64, 16, 1> {
     SMatrix::from_fn(
         |row, _| if row < COLOR_DIM { now[row] } else { now[row - COLOR_DIM] - before[row - COLOR_DIM] },
     )
@@ -110,9 +110,9 @@ mod tests {
         ColorDynamics::from_matrices(from_value, Square::identity() * 0.3, noise).unwrap()
     }
 
-    fn series(n: usize, seed: u64) -> Vec<ColorVector> {
+    fn series(n: usize, seed: u64) -> Vec<ColorStateVector> {
         let (truth, mut rng) = (truth(), ChaCha8Rng::seed_from_u64(seed));
-        let mut state = ColorState { value: ColorVector::zeros(), velocity: ColorVector::zeros() };
+        let mut state = ColorState { value: ColorStateVector::zeros(), velocity: ColorStateVector::zeros() };
         let mut next = || {
             state = truth.propagate(&state, &mut rng);
             state.value
@@ -139,10 +139,10 @@ mod tests {
 
     #[test]
     fn a_sequence_that_stands_still_needs_a_ridge_and_then_stays() {
-        let still = vec![ColorVector::repeat(0.5); 50];
+        let still = vec![ColorStateVector::repeat(0.5); 50];
         assert!(ColorDynamics::learn(&still, 0.0).is_err());
         let learned = ColorDynamics::learn(&still, 1e-3).unwrap();
-        let state = ColorState { value: ColorVector::repeat(0.5), velocity: ColorVector::zeros() };
+        let state = ColorState { value: ColorStateVector::repeat(0.5), velocity: ColorStateVector::zeros() };
         assert!((learned.dynamics.expected(&state).value - state.value).amax() < 1e-9);
         assert!(ColorDynamics::learn(&still[..17], 1.0).is_err());
         assert!(ColorDynamics::learn(&still, f64::NAN).is_err());

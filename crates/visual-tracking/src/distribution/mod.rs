@@ -11,5 +11,5 @@ pub use cloud::ColorCloud;
 pub use dynamics::ColorDynamics;
 pub use learn::LearnedDynamics;
 pub use principal::PrincipalColors;
-pub use state::{COLOR_DIM, ColorState, ColorVector};
-pub use warp::ColorWarp;
+pub use state::{COLOR_DIM, ColorState, ColorStateVector};
+pub use warp::AffineColorMap;

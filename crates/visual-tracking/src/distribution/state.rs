@@ -1,12 +1,12 @@
 use nalgebra::{Rotation3, SVector, Vector3};
 
-use super::{ColorWarp, PrincipalColors};
+use super::{AffineColorMap, PrincipalColors};
 
 /// Numbers of a colour distribution: centroid, three axis deviations, two angles.
 pub const COLOR_DIM: usize = 8;
 
 /// $`[\mathbf m, \boldsymbol λ, θ, φ]`$.
-pub type ColorVector = SVector<f64, COLOR_DIM>;
+pub type ColorStateVector = SVector<f64, COLOR_DIM>;
 
 /// Colour state of one sample: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
 /// [Andrade-Cetto & Sanfeliu, section 3.3]
@@ -28,18 +28,18 @@ pub type ColorVector = SVector<f64, COLOR_DIM>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorState {
     /// $`\mathbf x`$.
-    pub value: ColorVector,
+    pub value: ColorStateVector,
     /// Change of $`\mathbf x`$ from one picture to the next.
-    pub velocity: ColorVector,
+    pub velocity: ColorStateVector,
 }
 
 impl ColorState {
     /// The state of the reference itself, which does not move.
     pub fn at_rest(reference: &PrincipalColors) -> Self {
-        let mut value = ColorVector::zeros();
+        let mut value = ColorStateVector::zeros();
         value.fixed_rows_mut::<3>(0).copy_from(&reference.mean);
         value.fixed_rows_mut::<3>(3).copy_from(&reference.axis_sigmas);
-        Self { value, velocity: ColorVector::zeros() }
+        Self { value, velocity: ColorStateVector::zeros() }
     }
 
     /// The centroid.
@@ -59,12 +59,12 @@ impl ColorState {
 
     /// The affine map from the reference's colours to those of this state:
     /// $`\mathbf c ↦ \mathbf m' + U R(θ, φ) \operatorname{diag}(λ'_i / λ_i)\, Uᵀ (\mathbf c - \mathbf m)`$.
-    pub fn warp_from(&self, reference: &PrincipalColors) -> ColorWarp {
+    pub fn warp_from(&self, reference: &PrincipalColors) -> AffineColorMap {
         let [theta, phi] = self.angles();
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), theta)
             * Rotation3::from_axis_angle(&Vector3::y_axis(), -phi);
-        let scales = reference.axis_sigmas.zip_map(&self.axis_sigmas(), ColorWarp::scale);
-        ColorWarp::new(&reference.mean, &self.mean(), &reference.axes, &turn, &scales)
+        let scales = reference.axis_sigmas.zip_map(&self.axis_sigmas(), AffineColorMap::scale);
+        AffineColorMap::new(&reference.mean, &self.mean(), &reference.axes, &turn, &scales)
     }
 
     /// The same distribution seen from a new reference: angles are counted from its axes.

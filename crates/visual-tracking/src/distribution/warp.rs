@@ -8,12 +8,12 @@ const MAX_SCALE: f64 = 3.0;
 
 /// An affine map of the colour space. [`ColorState::warp_from`](super::ColorState::warp_from) makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColorWarp {
+pub struct AffineColorMap {
     linear: Matrix3<f64>,
     offset: Vector3<f64>,
 }
 
-impl ColorWarp {
+impl AffineColorMap {
     pub(super) fn new(
         from: &Vector3<f64>,
         to: &Vector3<f64>,

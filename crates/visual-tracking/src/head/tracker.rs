@@ -9,7 +9,7 @@ use super::search::{Candidate, Search};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
 use crate::{
-    BitMask, BoundingBox, ColorBinImage, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans,
+    BoundingBox, ColorBinImage, ColorHistogram, ColorQuantizer, ColorSpace, PixelMask, RowSpans,
     SlidingHistogram, TargetEstimate, TrackStatus, Tracker,
 };
 use crate::{RgbImage, TrackingError};
@@ -91,7 +91,7 @@ impl HeadTracker {
     /// in size.
     pub fn from_mask(
         picture: &RgbImage,
-        mask: &BitMask,
+        mask: &PixelMask,
         params: HeadTrackerParams,
     ) -> Result<Self, TrackingError> {
         let rect = mask.bounding_rect().ok_or(TrackingError::Empty { what: "pixels of the head" })?;

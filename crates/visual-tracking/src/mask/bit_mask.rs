@@ -9,15 +9,15 @@ use crate::error::check_size;
 /// Rows are padded to whole words with zeros; bit $`k`$ of word $`i`$ of a row is the pixel in column $`64 i + k`$.
 ///
 /// ```
-/// use wayfix_visual_tracking::BitMask;
-/// let mask = BitMask::from_fn(100, 3, |u, v| u > 60 && v == 1)?;
+/// use wayfix_visual_tracking::PixelMask;
+/// let mask = PixelMask::from_fn(100, 3, |u, v| u > 60 && v == 1)?;
 /// assert!(mask.get(70, 1) && !mask.get(70, 2) && !mask.get(100, 1));
-/// let border = mask.not().and(&BitMask::full(100, 3)?)?;
+/// let border = mask.not().and(&PixelMask::full(100, 3)?)?;
 /// assert_eq!(border.area() + mask.area(), 300);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BitMask {
+pub struct PixelMask {
     width: usize,
     height: usize,
     words: Vec<u64>,
@@ -26,7 +26,7 @@ pub struct BitMask {
 /// More pixels than any camera has, few enough to allocate on a wrong number without harm.
 const MAX_PIXELS: usize = 1 << 28;
 
-impl BitMask {
+impl PixelMask {
     /// No pixel is on.
     ///
     /// # Errors

@@ -1,15 +1,15 @@
 use std::ops::Range;
 
-use super::Connectivity;
+use super::PixelConnectivity;
 use super::runs::{count, fill, runs};
-use crate::{BitMask, PixelRect, TrackingError};
+use crate::{PixelMask, PixelRect, TrackingError};
 
 /// The connected parts of a mask, in the order of their first pixels row by row.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BitMask, Connectivity};
-/// let mask = BitMask::from_fn(80, 20, |u, v| (u < 5 && v < 5) || (u > 60 && v > 10))?;
-/// let blobs = mask.blobs(Connectivity::Eight);
+/// use wayfix_visual_tracking::{PixelMask, PixelConnectivity};
+/// let mask = PixelMask::from_fn(80, 20, |u, v| (u < 5 && v < 5) || (u > 60 && v > 10))?;
+/// let blobs = mask.blobs(PixelConnectivity::Eight);
 /// assert_eq!(blobs.iter().map(|blob| blob.area).collect::<Vec<_>>(), [25, 19 * 9]);
 /// assert_eq!((blobs.largest(), blobs.nearest([9.0, 9.0])), (Some(1), Some(0)));
 /// assert_eq!(blobs.mask(0).and_then(|mask| mask.centroid()), Some([2.5, 2.5]));
@@ -81,7 +81,7 @@ impl Blobs {
     /// The blob that shares the most pixels with a mask; `None` if none shares any.
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if the mask differs in size.
-    pub fn most_overlapping(&self, mask: &BitMask) -> Result<Option<usize>, TrackingError> {
+    pub fn most_overlapping(&self, mask: &PixelMask) -> Result<Option<usize>, TrackingError> {
         mask.check_size(self.size)?;
         let mut shared = vec![0; self.len()];
         for run in &self.runs {
@@ -91,19 +91,19 @@ impl Blobs {
     }
 
     /// The pixels of one blob; `None` if it does not exist.
-    pub fn mask(&self, blob: usize) -> Option<BitMask> {
+    pub fn mask(&self, blob: usize) -> Option<PixelMask> {
         (blob < self.len()).then(|| self.union(|i| i == blob))
     }
 
     /// The pixels of all blobs for which `keep` is true.
-    pub fn filtered(&self, mut keep: impl FnMut(&Blob) -> bool) -> BitMask {
+    pub fn filtered(&self, mut keep: impl FnMut(&Blob) -> bool) -> PixelMask {
         let kept: Vec<bool> = self.blobs.iter().map(&mut keep).collect();
         self.union(|blob| kept[blob])
     }
 
-    fn union(&self, keep: impl Fn(usize) -> bool) -> BitMask {
-        let mut mask =
-            BitMask::empty(self.size.0, self.size.1).expect("invariant: the size of the mask they come from");
+    fn union(&self, keep: impl Fn(usize) -> bool) -> PixelMask {
+        let mut mask = PixelMask::empty(self.size.0, self.size.1)
+            .expect("invariant: the size of the mask they come from");
         for run in self.runs.iter().filter(|run| keep(run.blob)) {
             fill(mask.row_mut(run.row), run.columns.clone());
         }
@@ -111,10 +111,10 @@ impl Blobs {
     }
 }
 
-impl BitMask {
+impl PixelMask {
     /// The connected parts, joined run by run.
-    pub fn blobs(&self, connectivity: Connectivity) -> Blobs {
-        let reach = usize::from(connectivity == Connectivity::Eight);
+    pub fn blobs(&self, connectivity: PixelConnectivity) -> Blobs {
+        let reach = usize::from(connectivity == PixelConnectivity::Eight);
         let ends_before = |a: &Range<usize>, b: &Range<usize>| a.end + reach <= b.start;
         let (mut all, mut parents) = (Vec::<Run>::new(), Vec::new());
         let mut above = 0..0;
@@ -138,20 +138,20 @@ impl BitMask {
     }
 
     /// Number of enclosed parts of the background.
-    pub fn n_holes(&self, connectivity: Connectivity) -> usize {
+    pub fn n_holes(&self, connectivity: PixelConnectivity) -> usize {
         self.not().blobs(connectivity.dual()).iter().filter(|blob| self.encloses(&blob.rect)).count()
     }
 
     /// The mask without its holes.
     ///
     /// ```
-    /// use wayfix_visual_tracking::{BitMask, Connectivity};
-    /// let ring = BitMask::from_fn(9, 9, |u, v| u.abs_diff(4).max(v.abs_diff(4)) == 3)?;
-    /// assert_eq!((ring.area(), ring.n_holes(Connectivity::Eight)), (24, 1));
-    /// assert_eq!(ring.without_holes(Connectivity::Eight).area(), 49);
+    /// use wayfix_visual_tracking::{PixelMask, PixelConnectivity};
+    /// let ring = PixelMask::from_fn(9, 9, |u, v| u.abs_diff(4).max(v.abs_diff(4)) == 3)?;
+    /// assert_eq!((ring.area(), ring.n_holes(PixelConnectivity::Eight)), (24, 1));
+    /// assert_eq!(ring.without_holes(PixelConnectivity::Eight).area(), 49);
     /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
     /// ```
-    pub fn without_holes(&self, connectivity: Connectivity) -> Self {
+    pub fn without_holes(&self, connectivity: PixelConnectivity) -> Self {
         let outside = self.not().blobs(connectivity.dual()).filtered(|blob| !self.encloses(&blob.rect));
         outside.not()
     }

@@ -1,6 +1,6 @@
 /// Which pixels are neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Connectivity {
+pub enum PixelConnectivity {
     /// Those that share a side.
     Four,
     /// Those that share a side or a corner.
@@ -8,7 +8,7 @@ pub enum Connectivity {
     Eight,
 }
 
-impl Connectivity {
+impl PixelConnectivity {
     /// Connectivity of the background for this connectivity of the foreground: a closed curve must separate the plane.
     pub fn dual(self) -> Self {
         match self {

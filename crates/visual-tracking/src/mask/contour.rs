@@ -1,16 +1,16 @@
-use crate::BitMask;
+use crate::PixelMask;
 
 /// The eight neighbours clockwise from the right, as columns and rows are counted.
 const AROUND: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-impl BitMask {
+impl PixelMask {
     /// The outer contour of the first blob in row order, clockwise from its first pixel: pixels `[u, v]`, each adjacent to the next and the last
     /// to the first, by side or corner. Empty without pixels.
     ///
     /// Where the blob is one pixel thin the contour runs in both directions and lists pixels twice. [Moore's neighbour tracing]
     /// ```
-    /// use wayfix_visual_tracking::BitMask;
-    /// let mask = BitMask::from_fn(9, 9, |u, v| (2..5).contains(&u) && (3..6).contains(&v))?;
+    /// use wayfix_visual_tracking::PixelMask;
+    /// let mask = PixelMask::from_fn(9, 9, |u, v| (2..5).contains(&u) && (3..6).contains(&v))?;
     /// let ring = [[2, 3], [3, 3], [4, 3], [4, 4], [4, 5], [3, 5], [2, 5], [2, 4]];
     /// assert_eq!(mask.outer_contour(), ring);
     /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())

@@ -1,28 +1,28 @@
-use super::Connectivity;
-use crate::BitMask;
+use super::PixelConnectivity;
+use crate::PixelMask;
 
-impl BitMask {
+impl PixelMask {
     /// The Euler number: blobs minus holes, computed by local counting.
     ///
     /// Every run adds a piece, and every overlap of two rows joins two: $`E_4 = \sum_v r(A_v) - \sum_v r(A_v ∩ A_{v+1})`$ with $`r`$ the number of
     /// runs. Corners join as well in $`E_8 = E_4 - Q_D`$ with $`Q_D`$ squares of 2 × 2 that contain exactly one of their diagonals. This is the
     /// count by squares of [Gray 1971], arranged for three population counts per word.
     /// ```
-    /// use wayfix_visual_tracking::{BitMask, Connectivity};
-    /// let ring = BitMask::from_fn(5, 5, |u, v| u.abs_diff(2).max(v.abs_diff(2)) == 1)?;
-    /// let mask = ring.or(&BitMask::from_fn(5, 5, |u, v| u == v && u == 4)?)?;
-    /// assert_eq!(mask.euler_number(Connectivity::Eight), 0);
-    /// assert_eq!(mask.euler_number(Connectivity::Four), 1);
+    /// use wayfix_visual_tracking::{PixelMask, PixelConnectivity};
+    /// let ring = PixelMask::from_fn(5, 5, |u, v| u.abs_diff(2).max(v.abs_diff(2)) == 1)?;
+    /// let mask = ring.or(&PixelMask::from_fn(5, 5, |u, v| u == v && u == 4)?)?;
+    /// assert_eq!(mask.euler_number(PixelConnectivity::Eight), 0);
+    /// assert_eq!(mask.euler_number(PixelConnectivity::Four), 1);
     /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
     /// ```
-    pub fn euler_number(&self, connectivity: Connectivity) -> i64 {
+    pub fn euler_number(&self, connectivity: PixelConnectivity) -> i64 {
         let pairs = || self.rows().zip(self.rows().skip(1));
         let runs: u64 = self.rows().map(|row| n_runs(row.iter().copied())).sum();
         let joined: u64 = pairs().map(|(a, b)| n_runs(a.iter().zip(b).map(|(a, b)| a & b))).sum();
         let four = runs as i64 - joined as i64;
         match connectivity {
-            Connectivity::Four => four,
-            Connectivity::Eight => four - pairs().map(|(a, b)| n_diagonals(a, b)).sum::<u64>() as i64,
+            PixelConnectivity::Four => four,
+            PixelConnectivity::Eight => four - pairs().map(|(a, b)| n_diagonals(a, b)).sum::<u64>() as i64,
         }
     }
 }

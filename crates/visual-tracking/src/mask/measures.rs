@@ -1,7 +1,7 @@
 use super::runs::runs;
-use crate::{BitMask, PixelRect, TrackingError};
+use crate::{PixelMask, PixelRect, TrackingError};
 
-impl BitMask {
+impl PixelMask {
     /// Number of pixels that are on.
     pub fn area(&self) -> usize {
         self.words().iter().map(|word| word.count_ones() as usize).sum()
@@ -15,11 +15,11 @@ impl BitMask {
     /// The mean of the middles of the pixels that are on, `[u, v]` in pixels; none without pixels.
     ///
     /// ```
-    /// use wayfix_visual_tracking::BitMask;
-    /// let mask = BitMask::from_fn(9, 9, |u, v| u == 3 && v < 2)?;
+    /// use wayfix_visual_tracking::PixelMask;
+    /// let mask = PixelMask::from_fn(9, 9, |u, v| u == 3 && v < 2)?;
     /// assert_eq!(mask.centroid(), Some([3.5, 1.0]));
     /// assert_eq!(mask.bounding_rect().map(|rect| rect.size()), Some((1, 2)));
-    /// assert_eq!(mask.iou(&BitMask::from_fn(9, 9, |u, v| u == 3 && v < 4)?)?, 0.5);
+    /// assert_eq!(mask.iou(&PixelMask::from_fn(9, 9, |u, v| u == 3 && v < 4)?)?, 0.5);
     /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
     /// ```
     pub fn centroid(&self) -> Option<[f64; 2]> {

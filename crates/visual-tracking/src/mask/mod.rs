@@ -10,9 +10,9 @@ mod morphology;
 mod polygon;
 mod runs;
 
-pub use bit_mask::BitMask;
+pub use bit_mask::PixelMask;
 pub(crate) use bit_mask::check_extent;
 pub use blobs::{Blob, Blobs};
-pub use connectivity::Connectivity;
+pub use connectivity::PixelConnectivity;
 pub use morphology::StructuringElement;
 pub(crate) use runs::ones;

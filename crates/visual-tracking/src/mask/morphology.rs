@@ -1,5 +1,5 @@
 use super::bit_mask::padding;
-use crate::BitMask;
+use crate::PixelMask;
 
 /// Structuring element; a radius of 0 is a single pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +20,15 @@ pub enum StructuringElement {
 /// complement; closing only adds pixels and opening only takes some away.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BitMask, StructuringElement};
+/// use wayfix_visual_tracking::{PixelMask, StructuringElement};
 /// let square = StructuringElement::Square { radius: 1 };
-/// let mask = BitMask::from_fn(100, 9, |u, v| (60..69).contains(&u) && v != 4)?;
+/// let mask = PixelMask::from_fn(100, 9, |u, v| (60..69).contains(&u) && v != 4)?;
 /// assert_eq!(mask.closed(square).area(), 9 * 9);
 /// assert_eq!(mask.eroded(StructuringElement::Cross { radius: 2 }).area(), 5 * (2 + 2));
 /// assert_eq!(mask.opened(StructuringElement::Square { radius: 2 }).area(), 9 * 8);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
-impl BitMask {
+impl PixelMask {
     /// Every pixel that the element reaches from one that is on.
     pub fn dilated(&self, element: StructuringElement) -> Self {
         match element {

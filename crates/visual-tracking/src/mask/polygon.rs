@@ -1,14 +1,14 @@
 use super::runs::fill;
-use crate::{BitMask, TrackingError};
+use crate::{PixelMask, TrackingError};
 
-impl BitMask {
+impl PixelMask {
     /// The pixels whose centres are inside a closed polygon with corners `[u, v]` in pixels, by the even-odd rule. The polygon is clipped to the
     /// mask; polygons with a common side share no pixel.
     /// ```
-    /// use wayfix_visual_tracking::BitMask;
-    /// let triangle = BitMask::from_polygon(40, 40, &[[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]])?;
+    /// use wayfix_visual_tracking::PixelMask;
+    /// let triangle = PixelMask::from_polygon(40, 40, &[[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]])?;
     /// assert_eq!(triangle.area(), 20 * 19 / 2);
-    /// assert!(BitMask::from_polygon(40, 40, &[[0.0, f64::NAN]; 3]).is_err());
+    /// assert!(PixelMask::from_polygon(40, 40, &[[0.0, f64::NAN]; 3]).is_err());
     /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
     /// ```
     ///
@@ -51,19 +51,19 @@ mod tests {
 
     #[test]
     fn a_polygon_is_cut_off_at_the_edges() {
-        let big = BitMask::from_polygon(70, 5, &[[-9e9, -9e9], [9e9, -9e9], [9e9, 9e9], [-9e9, 9e9]]);
-        assert_eq!(big, BitMask::full(70, 5));
+        let big = PixelMask::from_polygon(70, 5, &[[-9e9, -9e9], [9e9, -9e9], [9e9, 9e9], [-9e9, 9e9]]);
+        assert_eq!(big, PixelMask::full(70, 5));
         for far in [[[80.0, 0.0], [90.0, 0.0], [90.0, 9.0]], [[-3.0, 0.0], [-1.0, 0.0], [-1.0, 9.0]]] {
-            assert!(BitMask::from_polygon(70, 5, &far).unwrap().is_empty());
+            assert!(PixelMask::from_polygon(70, 5, &far).unwrap().is_empty());
         }
         let extreme = [[-f64::MAX, -f64::MAX], [f64::MAX, f64::MAX], [f64::MAX, -f64::MAX]];
-        assert!(BitMask::from_polygon(70, 5, &extreme).is_ok());
+        assert!(PixelMask::from_polygon(70, 5, &extreme).is_ok());
     }
 
     #[test]
     fn points_and_lines_have_no_inside() {
         for corners in [&[][..], &[[3.0, 3.0]], &[[0.0, 0.0], [9.0, 9.0]]] {
-            assert!(BitMask::from_polygon(10, 10, corners).unwrap().is_empty());
+            assert!(PixelMask::from_polygon(10, 10, corners).unwrap().is_empty());
         }
     }
 
@@ -73,7 +73,7 @@ mod tests {
             .map(|k| (k as f64 * 2.0 * std::f64::consts::TAU / 5.0).sin_cos())
             .map(|(sin, cos)| [50.0 + 40.0 * sin, 50.0 - 40.0 * cos])
             .collect();
-        let mask = BitMask::from_polygon(100, 100, &star).unwrap();
+        let mask = PixelMask::from_polygon(100, 100, &star).unwrap();
         assert!(!mask.get(50, 50) && mask.get(50, 20) && !mask.get(0, 0));
     }
 }

@@ -1,5 +1,5 @@
 use crate::picture::rgb_pixels;
-use crate::{BitMask, RgbImage};
+use crate::{PixelMask, RgbImage};
 
 /// Source of edges near a point of a contour, for fitting a snake.
 pub trait EdgeSearch {
@@ -13,8 +13,8 @@ pub trait EdgeSearch {
 /// The boundary of a mask, crossed from inside to outside along the normal: $`∇S`$.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BitMask, EdgeSearch, MaskEdges};
-/// let mask = BitMask::from_fn(20, 10, |u, _| u < 8)?;
+/// use wayfix_visual_tracking::{PixelMask, EdgeSearch, MaskEdges};
+/// let mask = PixelMask::from_fn(20, 10, |u, _| u < 8)?;
 /// let edges = MaskEdges::new(&mask, (0, 0));
 /// assert_eq!(edges.find([5.5, 5.0], [1.0, 0.0], 6.0), Some(2.5)); // pixel 7 is the last, it ends at 8
 /// assert_eq!(edges.find([11.5, 5.0], [1.0, 0.0], 6.0), Some(-3.5));
@@ -23,13 +23,13 @@ pub trait EdgeSearch {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MaskEdges<'a> {
-    mask: &'a BitMask,
+    mask: &'a PixelMask,
     corner: (usize, usize),
 }
 
 impl<'a> MaskEdges<'a> {
     /// Edges of a mask whose top left pixel is pixel `corner` of the image.
-    pub fn new(mask: &'a BitMask, corner: (usize, usize)) -> Self {
+    pub fn new(mask: &'a PixelMask, corner: (usize, usize)) -> Self {
         Self { mask, corner }
     }
 
@@ -83,7 +83,7 @@ impl<'a> ColorEdges<'a> {
     }
 
     /// Restricts the edges to a mask whose top left pixel is pixel `corner` of the image.
-    pub fn within(self, band: &'a BitMask, corner: (usize, usize)) -> Self {
+    pub fn within(self, band: &'a PixelMask, corner: (usize, usize)) -> Self {
         Self { band: Some(MaskEdges::new(band, corner)), ..self }
     }
 
@@ -158,7 +158,7 @@ mod tests {
             assert!((start + found - 8.0).abs() <= 0.5, "from {start}: {found}");
         }
         assert_eq!(edges.find([2.0, 5.0], [1.0, 0.0], 3.0), None);
-        let elsewhere = BitMask::from_fn(20, 10, |u, _| u > 12).unwrap();
+        let elsewhere = PixelMask::from_fn(20, 10, |u, _| u > 12).unwrap();
         assert_eq!(edges.within(&elsewhere, (0, 0)).find([8.0, 5.0], [1.0, 0.0], 5.0), None);
     }
 }

@@ -123,7 +123,7 @@ fn along<'a>(
 
 #[cfg(test)]
 mod tests {
-    use crate::{AffineSnake, BitMask, BoundingBox, MaskEdges, Outline, SnakeParams};
+    use crate::{AffineSnake, BoundingBox, MaskEdges, Outline, PixelMask, SnakeParams};
 
     fn ellipse(u: f64, v: f64, a: f64, b: f64) -> impl Fn(usize, usize) -> bool {
         move |x, y| ((x as f64 + 0.5 - u) / a).powi(2) + ((y as f64 + 0.5 - v) / b).powi(2) < 1.0
@@ -139,7 +139,7 @@ mod tests {
     fn a_third_of_the_contour_may_be_hidden() {
         let target = ellipse(64.0, 62.0, 25.0, 25.0);
         // Everything left of column 50 is covered.
-        let mask = BitMask::from_fn(120, 120, |u, v| target(u, v) && u >= 50).unwrap();
+        let mask = PixelMask::from_fn(120, 120, |u, v| target(u, v) && u >= 50).unwrap();
         let snake = snake();
         let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
@@ -152,7 +152,7 @@ mod tests {
     fn a_neck_stays_outside() {
         let target = ellipse(62.0, 60.0, 25.0, 25.0);
         let mask =
-            BitMask::from_fn(120, 120, |u, v| target(u, v) || (u >= 62 && (52..68).contains(&v))).unwrap();
+            PixelMask::from_fn(120, 120, |u, v| target(u, v) || (u >= 62 && (52..68).contains(&v))).unwrap();
         let snake = snake();
         let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
@@ -164,12 +164,12 @@ mod tests {
     #[test]
     fn nothing_in_sight_moves_nothing() {
         let snake = snake();
-        for mask in [BitMask::empty(120, 120).unwrap(), BitMask::full(120, 120).unwrap()] {
+        for mask in [PixelMask::empty(120, 120).unwrap(), PixelMask::full(120, 120).unwrap()] {
             let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
             assert_eq!((fit.support, fit.visible), (0.0, 1.0));
             assert!((fit.map.translation - snake.map().translation).norm() < 1e-9);
         }
-        let elsewhere = BitMask::full(10, 10).unwrap();
+        let elsewhere = PixelMask::full(10, 10).unwrap();
         let fit = snake.fit(snake.map(), &MaskEdges::new(&elsewhere, (500, 500)), &SnakeParams::default());
         assert_eq!((fit.support, fit.visible), (0.0, 0.0));
     }

@@ -1,5 +1,5 @@
 use crate::BoundingBox;
-use crate::{AffineMap, BitMask, TrackingError};
+use crate::{AffineMap, PixelMask, TrackingError};
 
 /// A closed polygon around a target; points `[u, v]` in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$.
 ///
@@ -48,7 +48,7 @@ impl Outline {
 
     /// The outer contour of a mask with one blob, whose top left pixel is pixel `corner` of the image: along the rim of its pixels, without
     /// their steps. `None` for an empty mask or one too thin to enclose an area.
-    pub fn of_mask(mask: &BitMask, corner: (usize, usize)) -> Option<Self> {
+    pub fn of_mask(mask: &PixelMask, corner: (usize, usize)) -> Option<Self> {
         let middle = |[u, v]: [usize; 2]| [(u + corner.0) as f64 + 0.5, (v + corner.1) as f64 + 0.5];
         let middles = Self::from_points(mask.outer_contour().into_iter().map(middle).collect()).ok()?;
         let smooth = middles.smoothed(2).unwrap_or(middles);

@@ -6,7 +6,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{FilmFrame, Silhouette, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BitMask, ContourTracker, ContourTrackerParams, RgbImage, TargetEstimate, TrackStatus, Tracker as _,
+    ContourTracker, ContourTrackerParams, PixelMask, RgbImage, TargetEstimate, TrackStatus, Tracker as _,
 };
 
 /// What became of every frame after the first.
@@ -93,12 +93,12 @@ pub(crate) fn picture_of(frame: &FilmFrame) -> RgbImage {
     RgbImage::from_raw(rgb.width as u32, rgb.height as u32, rgb.rgb.clone()).expect("3 bytes a pixel")
 }
 
-pub(crate) fn mask_of(silhouette: &Silhouette) -> BitMask {
+pub(crate) fn mask_of(silhouette: &Silhouette) -> PixelMask {
     let width = silhouette.width();
     let inside = |u: usize, v: usize| silhouette.pixels()[v * width + u];
-    BitMask::from_fn(width, silhouette.height(), inside).expect("pixels")
+    PixelMask::from_fn(width, silhouette.height(), inside).expect("pixels")
 }
 
-pub(crate) fn contour_mask(target: &TargetEstimate, size: (usize, usize)) -> BitMask {
-    BitMask::from_polygon(size.0, size.1, &target.outline).expect("finite points")
+pub(crate) fn contour_mask(target: &TargetEstimate, size: (usize, usize)) -> PixelMask {
+    PixelMask::from_polygon(size.0, size.1, &target.outline).expect("finite points")
 }

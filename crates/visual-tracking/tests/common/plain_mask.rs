@@ -1,6 +1,6 @@
 //! Masks one pixel at a time, from the definitions: what words are compared with.
 
-use wayfix_visual_tracking::{BitMask, Connectivity, StructuringElement};
+use wayfix_visual_tracking::{PixelConnectivity, PixelMask, StructuringElement};
 
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct Plain {
@@ -10,7 +10,7 @@ pub(crate) struct Plain {
 }
 
 impl Plain {
-    pub(crate) fn of(mask: &BitMask) -> Self {
+    pub(crate) fn of(mask: &PixelMask) -> Self {
         Self::new(mask.width() as i64, mask.height() as i64, |u, v| mask.get(u as usize, v as usize))
     }
 
@@ -39,12 +39,12 @@ impl Plain {
     }
 
     pub(crate) fn boundary(&self) -> Self {
-        let surrounded = |u, v| neighbours(Connectivity::Four).all(|(du, dv)| self.get(u + du, v + dv));
+        let surrounded = |u, v| neighbours(PixelConnectivity::Four).all(|(du, dv)| self.get(u + du, v + dv));
         self.map(|u, v| self.get(u, v) && !surrounded(u, v))
     }
 
     /// Connected parts, in the order of their first pixels.
-    pub(crate) fn parts(&self, connectivity: Connectivity) -> Vec<Self> {
+    pub(crate) fn parts(&self, connectivity: PixelConnectivity) -> Vec<Self> {
         let mut rest = self.clone();
         let mut parts = Vec::new();
         while let Some(first) = rest.on.iter().position(|&on| on) {
@@ -63,7 +63,7 @@ impl Plain {
     }
 
     /// Parts of what is off that do not reach the edge.
-    pub(crate) fn holes(&self, connectivity: Connectivity) -> Vec<Self> {
+    pub(crate) fn holes(&self, connectivity: PixelConnectivity) -> Vec<Self> {
         let mut parts = self.map(|u, v| !self.get(u, v)).parts(connectivity.dual());
         let at_edge = |u, v| u == 0 || v == 0 || u == self.width - 1 || v == self.height - 1;
         parts.retain(|part| !part.pixels().iter().any(|&[u, v]| at_edge(u as i64, v as i64)));
@@ -71,7 +71,7 @@ impl Plain {
     }
 
     /// By squares of 2 × 2 with one, three or two diagonal pixels. [Gray 1971]
-    pub(crate) fn euler_number(&self, connectivity: Connectivity) -> i64 {
+    pub(crate) fn euler_number(&self, connectivity: PixelConnectivity) -> i64 {
         let (mut ones, mut threes, mut diagonals) = (0, 0, 0);
         for v in -1..self.height {
             for u in -1..self.width {
@@ -85,8 +85,8 @@ impl Plain {
             }
         }
         match connectivity {
-            Connectivity::Four => (ones - threes + 2 * diagonals) / 4,
-            Connectivity::Eight => (ones - threes - 2 * diagonals) / 4,
+            PixelConnectivity::Four => (ones - threes + 2 * diagonals) / 4,
+            PixelConnectivity::Eight => (ones - threes - 2 * diagonals) / 4,
         }
     }
 
@@ -143,10 +143,10 @@ fn reach(element: StructuringElement, limit: i64) -> impl Iterator<Item = (i64, 
     all.filter(move |&(du, dv)| !cross || du == 0 || dv == 0)
 }
 
-fn neighbours(connectivity: Connectivity) -> impl Iterator<Item = (i64, i64)> {
+fn neighbours(connectivity: PixelConnectivity) -> impl Iterator<Item = (i64, i64)> {
     let element = match connectivity {
-        Connectivity::Four => StructuringElement::Cross { radius: 1 },
-        Connectivity::Eight => StructuringElement::Square { radius: 1 },
+        PixelConnectivity::Four => StructuringElement::Cross { radius: 1 },
+        PixelConnectivity::Eight => StructuringElement::Square { radius: 1 },
     };
     reach(element, 1).filter(|&step| step != (0, 0))
 }

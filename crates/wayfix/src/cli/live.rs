@@ -3,7 +3,7 @@ use std::net::{IpAddr, SocketAddr};
 use anyhow::Result;
 use wayfix_sensor_log::MessageSink;
 
-use crate::live::{LiveServer, Pace};
+use crate::live::{LiveServer, PlaybackPace};
 use wayfix_evaluation::terminal::print_message;
 
 // No documentation: it would become that of every command that takes these arguments.
@@ -29,14 +29,14 @@ pub(super) struct LiveArguments {
 /// The server of a run.
 pub(super) struct Live {
     server: LiveServer,
-    pace: Pace,
+    pace: PlaybackPace,
 }
 
 impl LiveArguments {
     /// Starts the server if requested, and prints its address.
     pub(super) fn start(&self) -> Result<Option<Live>> {
         let Some(address) = self.live else { return Ok(None) };
-        let live = Live { pace: Pace::new(self.pace)?, server: LiveServer::start(address)? };
+        let live = Live { pace: PlaybackPace::new(self.pace)?, server: LiveServer::start(address)? };
         print_message(format!(
             "live: open {} in Foxglove (Open connection, Foxglove WebSocket); the run begins then",
             live.server.url()

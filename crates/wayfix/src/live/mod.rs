@@ -11,5 +11,5 @@ mod server;
 mod sink;
 
 pub use error::LiveError;
-pub use pace::Pace;
+pub use pace::PlaybackPace;
 pub use server::LiveServer;

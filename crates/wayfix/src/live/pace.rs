@@ -10,12 +10,12 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(5);
 
 /// Delays messages to the pace of the log.
 /// ```
-/// use wayfix::live::Pace;
-/// assert!(Pace::new(2.0).is_ok());
-/// assert!(Pace::new(-1.0).is_err() && Pace::new(f64::NAN).is_err());
+/// use wayfix::live::PlaybackPace;
+/// assert!(PlaybackPace::new(2.0).is_ok());
+/// assert!(PlaybackPace::new(-1.0).is_err() && PlaybackPace::new(f64::NAN).is_err());
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
+pub struct PlaybackPace {
     factor: f64,
     begun: Option<Begun>,
 }
@@ -28,7 +28,7 @@ struct Begun {
     due: Duration,
 }
 
-impl Pace {
+impl PlaybackPace {
     /// `factor` times as fast as the log was recorded; 0 disables the delay. Pauses longer than five seconds are cut to five.
     /// # Errors
     /// Returns [`LiveError::Pace`].
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     fn dues(factor: f64, seconds: &[f64]) -> Vec<Duration> {
-        let mut pace = Pace::new(factor).expect("a factor");
+        let mut pace = PlaybackPace::new(factor).expect("a factor");
         let due = |seconds: &f64| pace.due(Stamp::from_seconds(*seconds).expect("a stamp")).1;
         seconds.iter().map(due).collect()
     }

@@ -9,7 +9,7 @@ use foxglove::{Context, FoxgloveError, WebSocketServer, WebSocketServerHandle, w
 use wayfix_sensor_log::MessageSink;
 
 use super::{
-    LiveError, Pace,
+    LiveError, PlaybackPace,
     audience::Audience,
     sink::{Clock, LiveSink},
 };
@@ -21,10 +21,10 @@ const GRACE: Duration = Duration::from_secs(2);
 ///
 /// It is read-only: viewers cannot change or publish anything.
 /// ```
-/// use wayfix::live::{LiveError, LiveServer, Pace};
+/// use wayfix::live::{LiveError, LiveServer, PlaybackPace};
 /// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateLog};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
-/// let estimates = SlamEstimateLog::<PointFrontEnd>::new(vec![server.sink(Pace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
+/// let estimates = SlamEstimateLog::<PointFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
 /// let again = LiveServer::start(server.address());
 /// assert!(matches!(again, Err(LiveError::InUse { .. })));
@@ -81,7 +81,7 @@ impl LiveServer {
     }
 
     /// Takes messages and passes them on at a pace.
-    pub fn sink(&self, pace: Pace) -> Box<dyn MessageSink> {
+    pub fn sink(&self, pace: PlaybackPace) -> Box<dyn MessageSink> {
         Box::new(LiveSink {
             context: Arc::clone(&self.context),
             server: Arc::clone(&self.handle),

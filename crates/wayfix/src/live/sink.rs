@@ -3,7 +3,7 @@ use std::{sync::Arc, time::Duration};
 use foxglove::{Context, WebSocketServerHandle};
 use wayfix_sensor_log::{LogError, Message, MessageSink, Stamp};
 
-use super::{Pace, audience::Audience};
+use super::{PlaybackPace, audience::Audience};
 use wayfix_systems::system::Stopwatch;
 
 /// Minimum period of clock messages to viewers; a viewer that reads more slowly would be disconnected.
@@ -14,7 +14,7 @@ pub(super) struct LiveSink {
     pub(super) context: Arc<Context>,
     pub(super) server: Arc<WebSocketServerHandle>,
     pub(super) audience: Arc<Audience>,
-    pub(super) pace: Pace,
+    pub(super) pace: PlaybackPace,
     pub(super) clock: Clock,
 }
 

@@ -28,7 +28,7 @@ impl Drive {
         let route = building.aisles().laps(LAPS, &mut rng).unwrap();
         let params = IndoorParams { drive: calibrated_robot(&mut rng), ..IndoorParams::default() };
         let steps = IndoorDrive::new(&building, route, params, RandomStreams::new(rng)).unwrap();
-        let frame = |step: wayfix_scene_sim::indoors::IndoorStep| {
+        let frame = |step: wayfix_scene_sim::indoors::IndoorDriveStep| {
             let view = &step.view;
             let image = EncodedImage::png_rgb(view.width as u32, view.height as u32, &view.rgb).unwrap();
             (image, step.pose, step.odometry)

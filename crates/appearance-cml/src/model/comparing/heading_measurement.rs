@@ -1,6 +1,6 @@
 use super::super::interpolate::{KERNEL_WIDTH, groups, nearest_of, shares, turn_of};
 use super::super::{PlaceMatch, ViewDistanceScale};
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// Which way the robot looks, as the references say that lie around it.
 ///
@@ -29,7 +29,7 @@ impl HeadingMeasurement {
     pub(crate) fn of(
         place_matches: &[PlaceMatch],
         scale: &ViewDistanceScale,
-    ) -> Result<Option<Self>, AppearanceError> {
+    ) -> Result<Option<Self>, AppearanceMapError> {
         let groups = groups(place_matches, scale);
         let Some(group) = groups.first().map(|group| nearest_of(group)) else { return Ok(None) };
         let shares = shares(group, KERNEL_WIDTH * scale.step_distance());

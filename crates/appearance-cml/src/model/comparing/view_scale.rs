@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-use crate::AppearanceError;
+use crate::AppearanceMapError;
 
 /// How much two views differ whose places are so far apart along the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ impl ViewDistanceScale {
         near: &[ViewDifferenceSample],
         ahead: &[ViewDifferenceSample],
         far: &[f64],
-    ) -> Result<Self, AppearanceError> {
+    ) -> Result<Self, AppearanceMapError> {
         let mut scale = Self::default();
         for (samples, kept) in [(near, &mut scale.near), (ahead, &mut scale.ahead)] {
             for sample in samples {

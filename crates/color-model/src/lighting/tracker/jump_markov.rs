@@ -1,6 +1,6 @@
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_kalman::{JumpMarkovFilter, JumpMarkovFilterParams, ModelBank, SequentialForm};
+use wayfix_kalman::{FilterBank, JumpMarkovFilter, JumpMarkovFilterParams, SequentialForm};
 
 use super::{
     super::filter::check_seconds,
@@ -13,12 +13,12 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// histories of the active light, instead of particles that sample them.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
-/// use wayfix_color_model::{ColorMeans, JumpMarkovLightingTracker, LightingTracker, LightingBank, LightingFilter, LightingParams};
+/// use wayfix_color_model::{ColorMeans, JumpMarkovLightingTracker, LightingTracker, LightingBank, LightingFilter, LightingFilterParams};
 /// use wayfix_gaussian_core::Gaussian;
 /// use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
 /// let light = |y: f64| {
 ///     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 100.0)?;
-///     LightingFilter::new(prior, LightingParams::default())
+///     LightingFilter::new(prior, LightingFilterParams::default())
 /// };
 /// let bank = LightingBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
 /// let mut tracker = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default())?;
@@ -48,8 +48,8 @@ impl JumpMarkovLightingTracker {
         };
         let beliefs: Vec<_> = bank.members().iter().map(|light| belief(light)).collect();
         let motions = bank.members().iter().map(|light| LightMotion::drift_of(light)).collect();
-        let models: ModelBank<LightMotion, SequentialForm> =
-            ModelBank::new(motions, SequentialForm, &beliefs)?;
+        let models: FilterBank<LightMotion, SequentialForm> =
+            FilterBank::new(motions, SequentialForm, &beliefs)?;
         let noise = bank.members().first().map(|light| *light.params()).unwrap_or_default();
         Ok(Self {
             filter: JumpMarkovFilter::new(models, bank.chain().clone(), params)?,

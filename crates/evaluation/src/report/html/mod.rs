@@ -69,12 +69,12 @@ fn number_cell(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{LinesPlot, PlotSeries};
+    use crate::plot::{LinePlot, PlotSeries};
     use crate::report::{Metric, ReportRun};
 
     fn hostile() -> Report {
         let evil = "</script><script>alert(\"1\")</script>&<img src=x onerror='x'>";
-        let plot = LinesPlot {
+        let plot = LinePlot {
             title: evil.to_owned(),
             series: vec![PlotSeries::new(evil, vec![(0.0, 1.0), (1.0, 2.0)])],
             ..Default::default()

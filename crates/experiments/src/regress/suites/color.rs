@@ -10,7 +10,7 @@ use wayfix_sensor_log::{OpenOptions, Record};
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    color::{self, ColorEstimateLog, ColorSystemParams, ParticleFilm, priors},
+    color::{self, ColorEstimateLog, ColorSystemParams, ParticleSnapshots, priors},
     system::{RunStep, System},
 };
 
@@ -148,7 +148,7 @@ fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams
     let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let bank = priors::bank(&priors::built_in()?, params)?;
-    let mut particles = ParticleFilm::new(color::n_images(&records));
+    let mut particles = ParticleSnapshots::new(color::n_images(&records));
     let mut run = color::run(
         &records,
         map,

@@ -14,7 +14,7 @@ const LONGEST_M: f64 = 100_000.0;
 
 /// A grid of aisles: where people walk and robots drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Aisles {
+pub struct AisleGrid {
     /// x of the aisles along y, increasing, m.
     pub(in crate::indoors) xs: Vec<f64>,
     /// y of the aisles along x, increasing, m.
@@ -28,7 +28,7 @@ pub struct Aisles {
 /// A crossing: number of the aisle along y, then along x.
 pub type AisleCrossing = [usize; 2];
 
-impl Aisles {
+impl AisleGrid {
     /// All crossings.
     pub fn crossings(&self) -> Vec<AisleCrossing> {
         let (n, m) = (self.xs.len(), self.ys.len());

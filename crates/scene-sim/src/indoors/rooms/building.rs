@@ -10,7 +10,7 @@ use super::super::light::LightField;
 use super::super::panel::{Material, Panel};
 use super::super::texture::Texture;
 use super::super::view::ViewRenderer;
-use super::aisles::Aisles;
+use super::aisles::AisleGrid;
 use crate::scenery::RgbPicture;
 use crate::world::{SensorWorld, Wall};
 use crate::{SimulationError, check};
@@ -29,7 +29,7 @@ pub struct Building {
     pub(in crate::indoors) light: LightField,
     pub(in crate::indoors) n_lamps: usize,
     pub(in crate::indoors) n_curtains: usize,
-    pub(in crate::indoors) aisles: Aisles,
+    pub(in crate::indoors) aisles: AisleGrid,
 }
 
 impl Building {
@@ -39,7 +39,7 @@ impl Building {
     }
 
     /// The drivable aisles.
-    pub fn aisles(&self) -> &Aisles {
+    pub fn aisles(&self) -> &AisleGrid {
         &self.aisles
     }
 

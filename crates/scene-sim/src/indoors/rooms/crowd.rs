@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 
 use super::super::color::{Rgb8, about, from_hsv};
-use super::aisles::{AisleCrossing, Aisles};
+use super::aisles::{AisleCrossing, AisleGrid};
 use crate::random::deviate::{below, chance, uniform};
 
 /// Minimum distance of people from the robot, m.
@@ -32,7 +32,7 @@ struct Person {
 }
 
 impl Crowd {
-    pub(in crate::indoors) fn draw<R: Rng + ?Sized>(n: usize, aisles: &Aisles, rng: &mut R) -> Self {
+    pub(in crate::indoors) fn draw<R: Rng + ?Sized>(n: usize, aisles: &AisleGrid, rng: &mut R) -> Self {
         let crossings = aisles.crossings();
         let person = |_| {
             let from = crossings[below(crossings.len(), rng)];
@@ -58,7 +58,7 @@ impl Crowd {
     pub(in crate::indoors) fn advance<R: Rng + ?Sized>(
         &mut self,
         seconds: f64,
-        aisles: &Aisles,
+        aisles: &AisleGrid,
         rng: &mut R,
     ) {
         for person in &mut self.people {
@@ -69,7 +69,7 @@ impl Crowd {
     /// Positions and clothes of all people; those in the robot's path step aside.
     pub(in crate::indoors) fn standing(
         &self,
-        aisles: &Aisles,
+        aisles: &AisleGrid,
         robot: Vector2<f64>,
     ) -> impl Iterator<Item = (Vector2<f64>, [Rgb8; 3])> {
         self.people.iter().map(move |person| {
@@ -86,7 +86,7 @@ impl Crowd {
 }
 
 impl Person {
-    fn advance<R: Rng + ?Sized>(&mut self, seconds: f64, aisles: &Aisles, rng: &mut R) {
+    fn advance<R: Rng + ?Sized>(&mut self, seconds: f64, aisles: &AisleGrid, rng: &mut R) {
         if self.pause_s > 0.0 {
             self.pause_s -= seconds;
             return;
@@ -100,14 +100,14 @@ impl Person {
         }
     }
 
-    fn turn<R: Rng + ?Sized>(&mut self, aisles: &Aisles, rng: &mut R) {
+    fn turn<R: Rng + ?Sized>(&mut self, aisles: &AisleGrid, rng: &mut R) {
         let ways = aisles.neighbours(self.to);
         (self.from, self.to) = (self.to, ways[below(ways.len(), rng)]);
         self.along_m = 0.0;
         self.aside_m = uniform(-2.0, 2.0, rng) * aisles.max_lateral_offset_m;
     }
 
-    fn place(&self, aisles: &Aisles) -> Vector2<f64> {
+    fn place(&self, aisles: &AisleGrid) -> Vector2<f64> {
         let (from, to) = (aisles.place(self.from), aisles.place(self.to));
         let ahead = (to - from).normalize();
         from + ahead * self.along_m + Vector2::new(-ahead.y, ahead.x) * self.aside_m

@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use super::super::color::grey;
 use super::super::light::{LightField, LightGroup, LightKind};
 use super::super::panel::{Material, Panel, sides, walls};
-use super::aisles::Aisles;
+use super::aisles::AisleGrid;
 use super::building::Building;
 use super::decor::{curtain, outside, stand, wall};
 use crate::random::deviate::{chance, uniform};
@@ -77,7 +77,7 @@ impl Laboratory {
             light: LightField::new(size, &lights()),
             n_lamps: 3,
             n_curtains: WINDOWS_M.len(),
-            aisles: Aisles { xs: XS_M.into(), ys: YS_M.into(), max_lateral_offset_m: 0.25, turn_m: 0.6 },
+            aisles: AisleGrid { xs: XS_M.into(), ys: YS_M.into(), max_lateral_offset_m: 0.25, turn_m: 0.6 },
         };
         for (k, (left, right)) in walls(-0.5 * size, 0.5 * size).into_iter().enumerate() {
             let texture = wall((right - left).norm(), CEILING_M, 0.1 + 0.2 * k as f64, &mut rng);

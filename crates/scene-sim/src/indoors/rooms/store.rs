@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use super::super::color::grey;
 use super::super::light::{LightField, LightGroup, LightKind};
 use super::super::panel::{Material, Panel, sides, walls};
-use super::aisles::Aisles;
+use super::aisles::AisleGrid;
 use super::building::Building;
 use super::decor::{outside, stand, wall};
 use super::shelf::{Assortment, Section};
@@ -199,9 +199,9 @@ impl RetailStore {
         aisles.ys.iter().enumerate().map(row).chain([window, skylight]).collect()
     }
 
-    fn aisles(&self) -> Aisles {
+    fn aisles(&self) -> AisleGrid {
         let (xs, ys) = self.params.aisles();
-        Aisles { xs, ys, max_lateral_offset_m: PLAY * self.params.min_aisle_width_m, turn_m: 0.8 }
+        AisleGrid { xs, ys, max_lateral_offset_m: PLAY * self.params.min_aisle_width_m, turn_m: 0.8 }
     }
 }
 

@@ -1,4 +1,4 @@
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 
 use crate::league::LinearRgb;
 use crate::{SimulationError, check};
@@ -7,7 +7,7 @@ use crate::{SimulationError, check};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraParams {
     /// Size and focal length. Default: that of an ERS-7, 208 × 160 pixels and 56.9° × 45.2°.
-    pub camera: Camera,
+    pub camera: PinholeCamera,
     /// Exposure time, ms. Default 10.
     pub exposure_ms: u32,
     /// Signal, as a share of full scale, of radiance 1. Default 1.
@@ -50,7 +50,7 @@ pub enum ChromaSubsampling {
 
 impl CameraParams {
     /// The defaults, for a camera of one's own.
-    pub fn new(camera: Camera) -> Self {
+    pub fn new(camera: PinholeCamera) -> Self {
         Self {
             camera,
             exposure_ms: 10,
@@ -72,9 +72,14 @@ impl CameraParams {
     /// The camera of an ERS-7, with the defaults.
     ///
     /// # Errors
-    /// Returns the errors of [`Camera`]; none occur, because its numbers are constant.
+    /// Returns the errors of [`PinholeCamera`]; none occur, because its numbers are constant.
     pub fn ers7() -> Result<Self, SimulationError> {
-        Ok(Self::new(Camera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?))
+        Ok(Self::new(PinholeCamera::from_field_of_view(
+            208,
+            160,
+            56.9_f64.to_radians(),
+            45.2_f64.to_radians(),
+        )?))
     }
 
     /// Whether the numbers make a camera.

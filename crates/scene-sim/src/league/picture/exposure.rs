@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose3;
 
 use super::layer::Layer;
@@ -16,7 +16,7 @@ const RAYS: [((f64, f64), f64); 4] =
 /// Light on the chip, and its sources.
 pub(super) struct Exposure {
     layers: [Layer; RAYS.len()],
-    camera: Camera,
+    camera: PinholeCamera,
     /// Row by row; 1 is a white wall in the everyday light of the venue.
     pub(super) light: Vec<LinearRgb>,
     /// 0, or number of the map colour plus 1 where all rays of a pixel meet that colour.
@@ -24,7 +24,7 @@ pub(super) struct Exposure {
 }
 
 impl Exposure {
-    pub(super) fn new(camera: Camera) -> Self {
+    pub(super) fn new(camera: PinholeCamera) -> Self {
         let n_pixels = camera.width() as usize * camera.height() as usize;
         Self {
             layers: std::array::from_fn(|_| Layer::new(n_pixels)),

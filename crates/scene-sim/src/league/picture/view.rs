@@ -1,12 +1,12 @@
 use nalgebra::{Matrix3, Vector3};
-use wayfix_color_map::Camera;
+use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose3;
 
 /// One bundle of rays: the camera at one moment, each ray through the same spot of its pixel.
 pub(super) struct View {
     pub(super) eye: Vector3<f64>,
     to_world: Matrix3<f64>,
-    camera: Camera,
+    camera: PinholeCamera,
     /// Position of a ray in its pixel; the centre is (0.5, 0.5).
     pub(super) spot: (f64, f64),
 }
@@ -20,7 +20,7 @@ pub(super) struct Affine {
 }
 
 impl View {
-    pub(super) fn new(pose: &Pose3<f64>, camera: Camera, spot: (f64, f64)) -> Self {
+    pub(super) fn new(pose: &Pose3<f64>, camera: PinholeCamera, spot: (f64, f64)) -> Self {
         let to_world = pose.rotation.to_rotation_matrix().into_inner();
         Self { eye: pose.translation, to_world, camera, spot }
     }

@@ -7,7 +7,7 @@ use super::head::Head;
 use super::odometry::GaitOdometry;
 use super::walker::{Walker, advance_phase};
 use super::{BodySwayParams, LeggedRobotParams};
-use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, space};
 
 /// The neck in the robot's frame on the ground, metres.
@@ -40,7 +40,7 @@ pub struct LeggedRobot {
     phase: f64,
     /// Strength of the sway, smoothed.
     strength: f64,
-    unsteady: [GaussMarkov; 2],
+    unsteady: [GaussMarkovProcess; 2],
     /// Roll and pitch beside the gait's, radians.
     slow: [f64; 2],
 }
@@ -59,7 +59,7 @@ impl LeggedRobot {
     ) -> Result<Self, SimulationError> {
         params.validate()?;
         let anywhere = Walker::anywhere(&params.walk, streams.of(RandomStreamPurpose::Walk));
-        let slow = GaussMarkov::new(UNSTEADY_S);
+        let slow = GaussMarkovProcess::new(UNSTEADY_S);
         Ok(Self {
             walker: Walker::new(params.walk, start.unwrap_or(anywhere)),
             head: Head::new(params.head, streams.of(RandomStreamPurpose::Joints)),

@@ -2,7 +2,7 @@ use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
 use super::GaitOdometryParams;
-use crate::random::GaussMarkov;
+use crate::random::GaussMarkovProcess;
 use crate::random::deviate::uniform;
 
 /// Odometry from commanded steps.
@@ -11,7 +11,7 @@ pub(super) struct GaitOdometry {
     params: GaitOdometryParams,
     /// Share of a command that becomes motion: forwards, sideways, turning.
     scales: [f64; 3],
-    drift: GaussMarkov,
+    drift: GaussMarkovProcess,
     /// True motion since the last increment, summed in the moving frame.
     moved: [f64; 3],
 }
@@ -20,7 +20,7 @@ impl GaitOdometry {
     pub(super) fn new<R: Rng + ?Sized>(params: GaitOdometryParams, rng: &mut R) -> Self {
         let [step, turn] = [params.step_scale, params.turn_scale];
         let scales = [step, step, turn].map(|[low, high]| uniform(low, high, rng));
-        Self { params, scales, drift: GaussMarkov::new(params.drift_correlation_s), moved: [0.0; 3] }
+        Self { params, scales, drift: GaussMarkovProcess::new(params.drift_correlation_s), moved: [0.0; 3] }
     }
 
     pub(super) fn add(&mut self, moved: &Pose2<f64>) {

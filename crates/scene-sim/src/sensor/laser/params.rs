@@ -2,7 +2,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::People;
 use crate::random::NoiseShape;
-use crate::sensor::range_bearing::RangeSigma;
+use crate::sensor::range_bearing::RangeDependentSigma;
 use crate::{SimulationError, check};
 
 /// The most beams a scan has.
@@ -31,7 +31,7 @@ pub struct LaserParams {
     /// Range reported for no echo, m; scans state it as their `range_max`. Default 81.91.
     pub no_echo_range_m: f64,
     /// Standard deviation of the white range error. Default 0.005 m, not growing.
-    pub range_noise: RangeSigma,
+    pub range_noise: RangeDependentSigma,
     /// Shape of the white range error. Default Gaussian.
     pub noise_shape: NoiseShape,
     /// Added to every range, metres. Default 0.
@@ -61,7 +61,7 @@ impl Default for LaserParams {
             n_beams: 181,
             max_range_m: 30.0,
             no_echo_range_m: 81.91,
-            range_noise: RangeSigma { constant_m: 0.005, per_meter: 0.0 },
+            range_noise: RangeDependentSigma { constant_m: 0.005, per_meter: 0.0 },
             noise_shape: NoiseShape::Gaussian,
             range_bias_m: 0.0,
             bearing_sigma_rad: 0.0005,

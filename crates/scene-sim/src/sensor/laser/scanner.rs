@@ -5,7 +5,7 @@ use wayfix_sensor_log::{LaserScan, RecordData};
 use super::LaserParams;
 use super::people::Person;
 use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
-use crate::sensor::{Sensor, SensorReading, TrueState};
+use crate::sensor::{SensorReading, SimulatedSensor, TrueState};
 use crate::world::Wall;
 use crate::{SimulationError, plane};
 
@@ -16,7 +16,7 @@ use crate::{SimulationError, plane};
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
-/// use wayfix_scene_sim::{random::RandomStreams, sensor::{Laser, LaserParams, TrueState, Sensor}, world::{FloorPlan, PlanarWorld, Wall}};
+/// use wayfix_scene_sim::{random::RandomStreams, sensor::{Laser, LaserParams, TrueState, SimulatedSensor}, world::{FloorPlan, PlanarWorld, Wall}};
 /// use wayfix_sensor_log::RecordData;
 ///
 /// let ahead = Wall { from: Vector2::new(3.0, -1.0), to: Vector2::new(3.0, 1.0) };
@@ -77,7 +77,7 @@ impl Laser {
     }
 }
 
-impl Sensor for Laser {
+impl SimulatedSensor for Laser {
     fn period_ms(&self) -> u32 {
         self.params.period_ms
     }

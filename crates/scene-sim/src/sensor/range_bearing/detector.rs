@@ -5,7 +5,7 @@ use wayfix_sensor_log::{Detection, DetectionTarget, RecordData};
 use super::RangeBearingParams;
 use super::drift::Drift;
 use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
-use crate::sensor::{Sensor, SensorReading, TrueState};
+use crate::sensor::{SensorReading, SimulatedSensor, TrueState};
 use crate::{SimulationError, plane};
 
 /// The sensor of [`RangeBearingParams`]. One reading holds one scan, sorted by bearing.
@@ -14,7 +14,7 @@ use crate::{SimulationError, plane};
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_scene_sim::{random::RandomStreams, sensor::{TrueState, RangeBearingDetector, RangeBearingParams, Sensor}, world::{FloorPlan, PlanarWorld}};
+/// use wayfix_scene_sim::{random::RandomStreams, sensor::{TrueState, RangeBearingDetector, RangeBearingParams, SimulatedSensor}, world::{FloorPlan, PlanarWorld}};
 /// use wayfix_sensor_log::{RecordData, TrueLandmark};
 ///
 /// let world = PlanarWorld::new(FloorPlan { landmarks: vec![TrueLandmark { id: 0, x: 3.0, y: 4.0 }], walls: vec![] });
@@ -66,7 +66,7 @@ impl RangeBearingDetector {
     }
 }
 
-impl Sensor for RangeBearingDetector {
+impl SimulatedSensor for RangeBearingDetector {
     fn period_ms(&self) -> u32 {
         self.params.period_ms
     }

@@ -1,12 +1,12 @@
-use super::RangeSigma;
-use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use super::RangeDependentSigma;
+use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, check};
 
 /// Errors that hang together in time, as of a target seen through the same haze for a while: a Gauss-Markov process per target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrelatedErrorParams {
     /// Standard deviation of the range's part. Default 0.
-    pub range: RangeSigma,
+    pub range: RangeDependentSigma,
     /// Standard deviation of the bearing's part, radians. Default 0.
     pub bearing_sigma_rad: f64,
     /// Correlation time, seconds. Default 5.
@@ -15,7 +15,7 @@ pub struct CorrelatedErrorParams {
 
 impl Default for CorrelatedErrorParams {
     fn default() -> Self {
-        Self { range: RangeSigma::default(), bearing_sigma_rad: 0.0, correlation_time_s: 5.0 }
+        Self { range: RangeDependentSigma::default(), bearing_sigma_rad: 0.0, correlation_time_s: 5.0 }
     }
 }
 
@@ -30,13 +30,13 @@ impl CorrelatedErrorParams {
 /// The drift of one target, running whether or not it is in view.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Drift {
-    range: GaussMarkov,
-    bearing: GaussMarkov,
+    range: GaussMarkovProcess,
+    bearing: GaussMarkovProcess,
 }
 
 impl Drift {
     pub(super) fn new(params: &CorrelatedErrorParams) -> Self {
-        let process = GaussMarkov::new(params.correlation_time_s);
+        let process = GaussMarkovProcess::new(params.correlation_time_s);
         Self { range: process.clone(), bearing: process }
     }
 

@@ -22,4 +22,4 @@ mod params;
 pub use clutter::{Clutter, ClutterLabel};
 pub use detector::RangeBearingDetector;
 pub use drift::CorrelatedErrorParams;
-pub use params::{RangeBearingParams, RangeSigma};
+pub use params::{RangeBearingParams, RangeDependentSigma};

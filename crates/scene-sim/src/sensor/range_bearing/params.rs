@@ -22,7 +22,7 @@ pub struct RangeBearingParams {
     /// Whole opening angle, symmetric about straight ahead, radians. Default 2π.
     pub field_of_view_rad: f64,
     /// Standard deviation of the white range error. Default 0.05 m, not growing.
-    pub range_noise: RangeSigma,
+    pub range_noise: RangeDependentSigma,
     /// Standard deviation of the white bearing error, radians. Default 0.01.
     pub bearing_sigma_rad: f64,
     /// Shape of the white errors. Default Gaussian.
@@ -53,14 +53,14 @@ pub struct RangeBearingParams {
 
 /// A standard deviation that grows with range.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct RangeSigma {
+pub struct RangeDependentSigma {
     /// At range 0, metres.
     pub constant_m: f64,
     /// Growth, metres per metre.
     pub per_meter: f64,
 }
 
-impl RangeSigma {
+impl RangeDependentSigma {
     /// The standard deviation at `range` metres.
     pub fn at(&self, range: f64) -> f64 {
         self.constant_m + self.per_meter * range
@@ -79,7 +79,7 @@ impl Default for RangeBearingParams {
             min_range_m: 0.1,
             max_range_m: 8.0,
             field_of_view_rad: TAU,
-            range_noise: RangeSigma { constant_m: 0.05, per_meter: 0.0 },
+            range_noise: RangeDependentSigma { constant_m: 0.05, per_meter: 0.0 },
             bearing_sigma_rad: 0.01,
             noise_shape: NoiseShape::Gaussian,
             range_bias_m: 0.0,

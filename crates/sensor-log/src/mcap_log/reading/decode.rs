@@ -11,7 +11,7 @@ use super::routes::Route;
 use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
 use crate::{
-    Detection, DetectionTarget, ProblemKind, Record, RecordData, Stamp, TrueLandmark, TrueWall, Velocity,
+    Detection, DetectionTarget, Record, RecordData, RowProblemKind, Stamp, TrueLandmark, TrueWall, Velocity,
 };
 
 /// The records in one message; a message without a stamp gets its log time.
@@ -62,7 +62,7 @@ pub(in crate::mcap_log) fn records(
 }
 
 pub(in crate::mcap_log) fn decode<M: Message + Default>(bytes: &[u8]) -> Result<M, Fault> {
-    M::decode(bytes).map_err(|error| (ProblemKind::Undecodable, error.to_string()))
+    M::decode(bytes).map_err(|error| (RowProblemKind::Undecodable, error.to_string()))
 }
 
 pub(in crate::mcap_log) fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) -> Result<Stamp, Fault> {
@@ -70,7 +70,7 @@ pub(in crate::mcap_log) fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) 
     timestamp
         .normalize()
         .map(|timestamp| Stamp::from_nanoseconds(timestamp.total_nanos()))
-        .ok_or_else(|| (ProblemKind::BadStamp, "time stamp out of range".to_owned()))
+        .ok_or_else(|| (RowProblemKind::BadStamp, "time stamp out of range".to_owned()))
 }
 
 fn velocity(message: &Odometry) -> Result<RecordData, Fault> {

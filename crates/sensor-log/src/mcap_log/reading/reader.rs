@@ -14,14 +14,14 @@ use super::{decode, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::formats::format::shortened;
 use crate::{
-    LogEnd, LogError, LogFormat, ProblemKind, ReadReport, Record, RecordData, RowProblem, Stamp, Topic,
+    BagTopic, LogEnd, LogError, LogFormat, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp,
 };
 
 /// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
 pub(crate) struct McapRecords {
     parts: Parts,
     messages: Messages,
-    topics: Vec<Topic>,
+    topics: Vec<BagTopic>,
 }
 
 impl McapRecords {
@@ -48,7 +48,7 @@ impl McapRecords {
     }
 
     /// The topics of ROS 2 messages and their use.
-    pub(crate) fn topics(&self) -> &[Topic] {
+    pub(crate) fn topics(&self) -> &[BagTopic] {
         &self.topics
     }
 
@@ -77,7 +77,7 @@ impl McapRecords {
             Step::On => true,
             Step::DamagedChunk(error) => {
                 let reason = format!("chunk left out: {error}");
-                self.messages.trouble(file, ProblemKind::DamagedChunk, reason, report);
+                self.messages.trouble(file, RowProblemKind::DamagedChunk, reason, report);
                 true
             }
             Step::Cut(end) => {
@@ -107,7 +107,7 @@ fn readable(files: &[PathBuf], report: &mut ReadReport) -> Result<Vec<PathBuf>, 
                 report.add(RowProblem {
                     file: file_name(path),
                     row: 0,
-                    kind: ProblemKind::UnreadableFile,
+                    kind: RowProblemKind::UnreadableFile,
                     reason,
                 });
                 first_error = first_error.or(Some(error));
@@ -191,7 +191,7 @@ impl Messages {
         };
         if understood.is_none() {
             let reason = format!("record of kind {opcode} breaks off");
-            self.trouble(file, ProblemKind::Undecodable, reason, report);
+            self.trouble(file, RowProblemKind::Undecodable, reason, report);
         }
     }
 
@@ -221,7 +221,7 @@ impl Messages {
         self.files[file].n_messages += 1;
         let Some(channel) = self.files[file].channels.get(&channel_id) else {
             let reason = format!("message on the unannounced channel {channel_id}");
-            self.trouble(file, ProblemKind::Unrecognized, reason, report);
+            self.trouble(file, RowProblemKind::Unrecognized, reason, report);
             return Some(());
         };
         let Some(route) = channel.route else {
@@ -271,7 +271,8 @@ impl Messages {
 
     fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut ReadReport) {
         let latest = self.clocks.get(topic).and_then(TopicClock::latest);
-        let kind = if Some(record.stamp) < latest { ProblemKind::TooLate } else { ProblemKind::BadStamp };
+        let kind =
+            if Some(record.stamp) < latest { RowProblemKind::TooLate } else { RowProblemKind::BadStamp };
         let reason = format!("{topic}: the stamp {} does not follow those before it; left out", record.stamp);
         self.trouble(file, kind, reason, report);
     }
@@ -302,12 +303,12 @@ impl Messages {
             if let Err(late) = self.reorder.push(record) {
                 let reason =
                     format!("{} is too late, {} is already out; left out", late.stamp, late.last_out);
-                self.trouble(file, ProblemKind::TooLate, reason, report);
+                self.trouble(file, RowProblemKind::TooLate, reason, report);
             }
         }
     }
 
-    fn trouble(&self, file: usize, kind: ProblemKind, reason: String, report: &mut ReadReport) {
+    fn trouble(&self, file: usize, kind: RowProblemKind, reason: String, report: &mut ReadReport) {
         let FileState { name, n_messages, .. } = &self.files[file];
         report.add(RowProblem { file: name.clone(), row: *n_messages, kind, reason });
     }

@@ -1,5 +1,5 @@
 use crate::text::row::RowError;
-use crate::{ProblemKind, Stamp};
+use crate::{RowProblemKind, Stamp};
 
 /// Between two rows of which the second is not later, nanoseconds.
 const STEP_NANOSECONDS: u64 = 100_000_000;
@@ -27,7 +27,7 @@ impl LineClock {
             Some(last) if own <= last => {
                 let made_up = Stamp::from_nanoseconds(last.nanoseconds().saturating_add(STEP_NANOSECONDS));
                 let reason = format!("{own} is not later than {last} before it; becomes {made_up}");
-                (made_up, Err(RowError::new(ProblemKind::NotLater, reason)))
+                (made_up, Err(RowError::new(RowProblemKind::NotLater, reason)))
             }
             _ => (own, Ok(())),
         };

@@ -26,7 +26,7 @@ use super::half_circle::is_half_circle;
 use super::row::{RowError, stamp_of};
 use super::scan_odometry::ScanOdometry;
 use crate::formats::compressed::TextReader;
-use crate::{LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, RecordData};
+use crate::{LogEnd, LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row).is_ok()
@@ -122,7 +122,7 @@ impl CarmenLog {
         match self.first_pass.faults.get(&line) {
             Some(ClockFault::Outlier) => {
                 let reason = format!("{own} is far from the times of the scans around it");
-                return Err(RowError::new(ProblemKind::BadStamp, reason));
+                return Err(RowError::new(RowProblemKind::BadStamp, reason));
             }
             Some(ClockFault::SetBack(nanoseconds)) => {
                 self.clock.was_set_back(*nanoseconds);

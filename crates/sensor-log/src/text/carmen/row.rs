@@ -5,7 +5,7 @@ use wayfix_estimation_traits::Pose2;
 use crate::formats::format::shortened;
 use crate::text::half_circle::half_circle;
 use crate::text::row::{RowError, columns, number, range};
-use crate::{LaserScan, ProblemKind};
+use crate::{LaserScan, RowProblemKind};
 
 /// First words of messages that the Carnegie Mellon toolkit logs and this crate has no use for; some carry the number of a device.
 const OTHER_WORDS: [&str; 7] = ["SYNC", "NEFF", "RLASER", "TRUEPOS", "LASER", "RAWLASER", "ROBOTLASER"];
@@ -93,7 +93,7 @@ pub(super) fn parse(row: &str) -> Result<CarmenRow, RowError> {
         }
         word => {
             let reason = format!("{:?} is no message of CARMEN", shortened(word));
-            Err(RowError::new(ProblemKind::Unrecognized, reason))
+            Err(RowError::new(RowProblemKind::Unrecognized, reason))
         }
     }
 }
@@ -105,7 +105,7 @@ fn front_scan(row: &str, mut rest: SplitAsciiWhitespace<'_>) -> Result<ScanRow, 
     let n_expected = n_beams + SCAN_COLUMNS as f64;
     if n_columns as f64 != n_expected {
         let reason = format!("{n_columns} columns instead of {n_expected} for {n_beams} beams");
-        return Err(RowError::new(ProblemKind::ColumnCount, reason));
+        return Err(RowError::new(RowProblemKind::ColumnCount, reason));
     }
     let ranges: Result<Vec<f64>, RowError> =
         rest.by_ref().take(n_columns - SCAN_COLUMNS).map(range).collect();
@@ -127,7 +127,7 @@ fn stated_scan(mut rest: SplitAsciiWhitespace<'_>, message: ScanMessage) -> Resu
     let n_columns = rest.clone().count();
     if n_columns != n_expected {
         let reason = format!("{n_columns} columns instead of {n_expected} after the remissions");
-        return Err(RowError::new(ProblemKind::ColumnCount, reason));
+        return Err(RowError::new(RowProblemKind::ColumnCount, reason));
     }
     let angle_increment = increment(field, resolution, ranges.len())?;
     let range_max = if maximum > 0.0 { maximum } else { f64::INFINITY };
@@ -144,7 +144,7 @@ fn counted(rest: &mut SplitAsciiWhitespace<'_>) -> Result<Vec<f64>, RowError> {
     let n_left = rest.clone().count();
     if count < 0.0 || count.fract() != 0.0 || count > n_left as f64 {
         let reason = format!("{n_left} columns are left for {count} readings");
-        return Err(RowError::new(ProblemKind::ColumnCount, reason));
+        return Err(RowError::new(RowProblemKind::ColumnCount, reason));
     }
     rest.by_ref().take(count as usize).map(range).collect()
 }
@@ -155,7 +155,7 @@ fn counted(rest: &mut SplitAsciiWhitespace<'_>) -> Result<Vec<f64>, RowError> {
 fn increment(field: f64, resolution: f64, n_beams: usize) -> Result<f64, RowError> {
     if n_beams < 2 {
         let reason = format!("{n_beams} beams have no field of view");
-        return Err(RowError::new(ProblemKind::Inconsistent, reason));
+        return Err(RowError::new(RowProblemKind::Inconsistent, reason));
     }
     let spanned = (n_beams - 1) as f64;
     let resolution_fits = resolution != 0.0 && (field - resolution * spanned).abs() < 1.5 * resolution.abs();
@@ -164,7 +164,7 @@ fn increment(field: f64, resolution: f64, n_beams: usize) -> Result<f64, RowErro
         (false, true) => Ok(field / spanned),
         (false, false) => {
             let reason = format!("a field of view of {field} rad in {n_beams} beams {resolution} rad apart");
-            Err(RowError::new(ProblemKind::Inconsistent, reason))
+            Err(RowError::new(RowProblemKind::Inconsistent, reason))
         }
     }
 }
@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    fn problem(row: &str) -> ProblemKind {
+    fn problem(row: &str) -> RowProblemKind {
         parse(row).err().expect("a bad row").kind
     }
 
@@ -216,16 +216,16 @@ mod tests {
         assert_eq!(increment(3.0, 0.5, 6).unwrap(), 0.5); // the last beam is missing
         assert_eq!(increment(3.0, 1.0, 7).unwrap(), 0.5);
         assert_eq!(increment(3.0, 0.0, 7).unwrap(), 0.5);
-        assert_eq!(increment(0.0, 0.0, 7).unwrap_err().kind, ProblemKind::Inconsistent);
-        assert_eq!(increment(3.0, 0.5, 1).unwrap_err().kind, ProblemKind::Inconsistent);
+        assert_eq!(increment(0.0, 0.0, 7).unwrap_err().kind, RowProblemKind::Inconsistent);
+        assert_eq!(increment(3.0, 0.5, 1).unwrap_err().kind, RowProblemKind::Inconsistent);
     }
 
     #[test]
     fn robotlaser_with_other_counts_than_stated_is_refused() {
-        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 9 1 2 3 0"), ProblemKind::ColumnCount);
-        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 3 1 2 3 0 0 0 0"), ProblemKind::ColumnCount);
-        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 -3 1 2 3"), ProblemKind::ColumnCount);
-        assert_eq!(problem("ROBOTLASER1 0 nan 2 1 80"), ProblemKind::NotFinite);
-        assert_eq!(problem("ROBOTLASER1"), ProblemKind::NotANumber);
+        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 9 1 2 3 0"), RowProblemKind::ColumnCount);
+        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 3 1 2 3 0 0 0 0"), RowProblemKind::ColumnCount);
+        assert_eq!(problem("ROBOTLASER1 0 -1 2 1 80 0.01 0 -3 1 2 3"), RowProblemKind::ColumnCount);
+        assert_eq!(problem("ROBOTLASER1 0 nan 2 1 80"), RowProblemKind::NotFinite);
+        assert_eq!(problem("ROBOTLASER1"), RowProblemKind::NotANumber);
     }
 }

@@ -14,7 +14,7 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct ConfirmationParams {
+pub struct LandmarkConfirmationParams {
     /// Scans in which it must be detected, the first included; 1 confirms every landmark at its first detection.
     pub n_detections: usize,
     /// Number of consecutive misses after which a tentative landmark is removed; never, if not given. Landmarks with an identity that the sensor
@@ -29,7 +29,7 @@ pub struct ConfirmationParams {
     pub min_detection_rate: f64,
 }
 
-impl Default for ConfirmationParams {
+impl Default for LandmarkConfirmationParams {
     /// Two observations that agree.
     fn default() -> Self {
         Self { n_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
@@ -73,8 +73,9 @@ where
 
     /// Removes landmarks that were in view but not detected: tentative ones in time, confirmed ones with too low a detection rate.
     pub(in crate::filter) fn remove_undetected(&mut self) {
-        let ConfirmationParams { n_detections, max_missed: Some(max_missed), min_detection_rate, .. } =
-            self.params.confirmation
+        let LandmarkConfirmationParams {
+            n_detections, max_missed: Some(max_missed), min_detection_rate, ..
+        } = self.params.confirmation
         else {
             return;
         };

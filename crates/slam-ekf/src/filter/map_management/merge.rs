@@ -18,21 +18,21 @@ use crate::{
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct MergingParams {
+pub struct LandmarkMergingParams {
     /// Minimum distance between two distinct landmarks, in units of the landmark's tangent space (m for points).
     pub min_separation: f64,
     /// Number of standard deviations of their difference that must also lie within that distance.
     pub n_sigmas: f64,
 }
 
-impl Default for MergingParams {
+impl Default for LandmarkMergingParams {
     /// Points at least 0.1 m apart, with two standard deviations.
     fn default() -> Self {
         Self { min_separation: 0.1, n_sigmas: 2.0 }
     }
 }
 
-impl MergingParams {
+impl LandmarkMergingParams {
     pub(in crate::filter) fn validated(self) -> Result<Self, SlamError> {
         for (name, value) in [("separation", self.min_separation), ("n_sigmas", self.n_sigmas)] {
             if !(value >= 0.0 && value.is_finite()) {
@@ -115,7 +115,11 @@ where
     }
 
     /// The landmark that is certainly nearer to this one than the minimum separation; the one with more observations first.
-    fn duplicate_of(&self, id: LandmarkId, merging: &MergingParams) -> Option<(LandmarkId, LandmarkId)> {
+    fn duplicate_of(
+        &self,
+        id: LandmarkId,
+        merging: &LandmarkMergingParams,
+    ) -> Option<(LandmarkId, LandmarkId)> {
         let own = self.landmarks.get(&id).filter(|slot| self.is_confirmed(slot))?;
         let is_one = |(other_id, other): &(&LandmarkId, &Slot<M::Landmark>)| {
             **other_id != id && self.is_confirmed(other) && self.are_nearer_than(merging, own, other)
@@ -126,7 +130,12 @@ where
     }
 
     /// The trace bounds the largest variance of the difference in any direction.
-    fn are_nearer_than(&self, merging: &MergingParams, a: &Slot<M::Landmark>, b: &Slot<M::Landmark>) -> bool {
+    fn are_nearer_than(
+        &self,
+        merging: &LandmarkMergingParams,
+        a: &Slot<M::Landmark>,
+        b: &Slot<M::Landmark>,
+    ) -> bool {
         let difference: Tangent<M::Landmark> = self.mean(a).local(&self.mean(b));
         let left = merging.min_separation - difference.norm();
         left >= 0.0 && {

@@ -25,9 +25,9 @@ pub(super) struct Column {
 
 /// The names of the columns of a table without a header, as in `t_ms,x_cm,y_cm`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ColumnNames(Vec<String>);
+pub struct PoseTableColumns(Vec<String>);
 
-impl FromStr for ColumnNames {
+impl FromStr for PoseTableColumns {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -51,7 +51,7 @@ pub(super) const KNOWN: &str =
 
 impl Columns {
     /// Reads the column names from the header of the table, or from `given`.
-    pub(super) fn of(table: &Table, given: Option<&ColumnNames>, option: &str) -> Result<Self, String> {
+    pub(super) fn of(table: &Table, given: Option<&PoseTableColumns>, option: &str) -> Result<Self, String> {
         let n = table.n_columns();
         let Some(names) = given.map(|given| &given.0).or(table.names.as_ref()) else {
             return Err(format!(

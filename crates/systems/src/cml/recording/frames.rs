@@ -1,12 +1,12 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat, ProblemKind, ReadReport, RowProblem, image_files};
+use wayfix_sensor_log::{EncodedImage, ImageFormat, ReadReport, RowProblem, RowProblemKind, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
 use super::{
     RecordingError,
-    columns::ColumnNames,
+    columns::PoseTableColumns,
     poses::{self, PoseRow},
     stamps::{self, Stamps, file_name},
 };
@@ -45,11 +45,11 @@ pub struct PoseTables<'a> {
     /// Table of poses.
     pub poses: &'a Path,
     /// Column names, for a table without a header.
-    pub columns: Option<&'a ColumnNames>,
+    pub columns: Option<&'a PoseTableColumns>,
     /// Table of frame times; `None` searches the folder of the frames.
     pub stamps: Option<&'a Path>,
     /// Column names of the stamps, for a table without a header.
-    pub stamp_columns: Option<&'a ColumnNames>,
+    pub stamp_columns: Option<&'a PoseTableColumns>,
 }
 
 impl FrameRecording {
@@ -88,7 +88,7 @@ impl FrameRecording {
                 Err(reason) => read.add(RowProblem {
                     file: name_of(path),
                     row: index as u64 + 1,
-                    kind: ProblemKind::UnreadableImage,
+                    kind: RowProblemKind::UnreadableImage,
                     reason,
                 }),
             }

@@ -10,7 +10,7 @@ mod smooth;
 mod stamps;
 mod table;
 
-pub use columns::ColumnNames;
+pub use columns::PoseTableColumns;
 pub use error::RecordingError;
 pub use frames::{FrameRecording, PoseTables, PosedFrame};
 pub use path::HeadingSource;

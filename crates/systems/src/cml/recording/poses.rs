@@ -5,7 +5,7 @@ use wayfix_sensor_log::ReadReport;
 
 use super::{
     RecordingError,
-    columns::{Column, ColumnNames, Columns, Quantity},
+    columns::{Column, Columns, PoseTableColumns, Quantity},
     table::Table,
 };
 
@@ -28,7 +28,7 @@ pub(super) struct PoseRow {
 /// Column names come from the header, or from `names` for a table without one. The unit comes from the name; the default is SI.
 pub(super) fn read(
     path: &Path,
-    names: Option<&ColumnNames>,
+    names: Option<&PoseTableColumns>,
     report: &mut ReadReport,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Option<PoseRow>>, RecordingError> {
@@ -73,7 +73,7 @@ mod tests {
 
     fn read_text(text: &str, names: Option<&str>) -> Result<(Vec<Option<PoseRow>>, Columns), String> {
         let table = Table::parse(text)?;
-        let names = names.map(|names| names.parse::<ColumnNames>()).transpose()?;
+        let names = names.map(|names| names.parse::<PoseTableColumns>()).transpose()?;
         let columns = Columns::of(&table, names.as_ref(), "--columns")?;
         Ok((poses(&table, &columns, &mut ReadReport::default())?, columns))
     }

@@ -8,7 +8,7 @@ use wayfix_sensor_log::{ReadReport, is_hidden};
 
 use super::{
     RecordingError,
-    columns::{ColumnNames, Columns, Quantity},
+    columns::{Columns, PoseTableColumns, Quantity},
     table::Table,
 };
 
@@ -18,7 +18,7 @@ pub(super) type Stamps = BTreeMap<String, f64>;
 /// Reads a table with a named column of times and one of file names.
 pub(super) fn read(
     path: &Path,
-    names: Option<&ColumnNames>,
+    names: Option<&PoseTableColumns>,
     report: &mut ReadReport,
     notes: &mut Vec<String>,
 ) -> Result<Stamps, RecordingError> {

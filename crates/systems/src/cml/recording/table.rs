@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_sensor_log::{ProblemKind, ReadReport, RowProblem};
+use wayfix_sensor_log::{ReadReport, RowProblem, RowProblemKind};
 
 use super::{
     RecordingError,
@@ -91,8 +91,11 @@ impl Table {
     /// Counts a row as unusable.
     pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut ReadReport) {
         report.rows_read = report.rows_read.saturating_sub(1);
-        let kind =
-            if reason.contains("columns, not") { ProblemKind::ColumnCount } else { ProblemKind::NotANumber };
+        let kind = if reason.contains("columns, not") {
+            RowProblemKind::ColumnCount
+        } else {
+            RowProblemKind::NotANumber
+        };
         report.add(RowProblem { file: self.file.clone(), row: line as u64, kind, reason });
     }
 

@@ -1,7 +1,7 @@
-use super::super::{RunHistory, TargetColors};
+use super::super::{TargetColorDistribution, TrackRunHistory};
 use super::run_history::Point;
 use wayfix_evaluation::plot::{
-    EllipsesPlot, FilmStrip, FilmStripFrame, LinesPlot, NamedEllipse, PlotError, PlotSeries, SvgPlot,
+    EllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot,
 };
 
 /// Film frames per row.
@@ -11,7 +11,7 @@ const FRAMES_A_ROW: usize = 3;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn plots(run_history: &RunHistory) -> Result<Vec<SvgPlot>, PlotError> {
+pub fn plots(run_history: &TrackRunHistory) -> Result<Vec<SvgPlot>, PlotError> {
     let mut plots = vec![film(run_history).draw()?, overlap(run_history).draw()?];
     if let Some(colors) = run_history.points.kept().iter().find_map(|point| point.colors) {
         let names = colors.space.axis_names();
@@ -21,7 +21,7 @@ pub fn plots(run_history: &RunHistory) -> Result<Vec<SvgPlot>, PlotError> {
     Ok(plots)
 }
 
-fn film(run_history: &RunHistory) -> FilmStrip {
+fn film(run_history: &TrackRunHistory) -> FilmStrip {
     let frame = |(index, image): &(usize, _)| FilmStripFrame {
         image: wayfix_sensor_log::EncodedImage::clone(image),
         caption: format!("frame {index}"),
@@ -42,25 +42,25 @@ fn film(run_history: &RunHistory) -> FilmStrip {
     }
 }
 
-fn overlap(run_history: &RunHistory) -> LinesPlot {
+fn overlap(run_history: &TrackRunHistory) -> LinePlot {
     let points = run_history.points.kept();
     let iou = points.iter().filter_map(|point| Some((point.index as f64, point.iou?))).collect();
     let quality = points.iter().map(|point| (point.index as f64, point.quality)).collect();
     let series =
         [PlotSeries::new("overlap with the truth", iou), PlotSeries::new("the tracker's quality", quality)];
-    LinesPlot {
+    LinePlot {
         title: "Overlap over the frames".to_owned(),
         x_label: frames(run_history),
         y_label: "intersection over union; quality".to_owned(),
         series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }
 
 /// The colour distribution along its path, as ellipses in two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
-fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
+fn clouds(run_history: &TrackRunHistory, names: [&str; 3]) -> EllipsesPlot {
     let plane = |v: usize| {
-        let ellipse = |(index, colors): &(usize, TargetColors)| NamedEllipse {
+        let ellipse = |(index, colors): &(usize, TargetColorDistribution)| NamedEllipse {
             name: format!("frame {index}"),
             center: (colors.mean[0], colors.mean[v]),
             covariance: [0, v].map(|i| [0, v].map(|j| colors.covariance[(i, j)])),
@@ -76,21 +76,21 @@ fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
 }
 
 /// The path of the target's mean colour.
-fn color_path(run_history: &RunHistory, names: [&str; 3]) -> LinesPlot {
+fn color_path(run_history: &TrackRunHistory, names: [&str; 3]) -> LinePlot {
     let axis = |c: usize| {
         let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));
         PlotSeries::new(names[c], run_history.points.kept().iter().filter_map(point).collect())
     };
-    LinesPlot {
+    LinePlot {
         title: "Mean colour of the target".to_owned(),
         x_label: frames(run_history),
         y_label: "share of the axis".to_owned(),
         series: [0, 1, 2].map(axis).to_vec(),
-        ..LinesPlot::default()
+        ..LinePlot::default()
     }
 }
 
-fn frames(run_history: &RunHistory) -> String {
+fn frames(run_history: &TrackRunHistory) -> String {
     match run_history.points.stride() {
         1 => "frame".to_owned(),
         stride => format!("frame, one in {stride}"),

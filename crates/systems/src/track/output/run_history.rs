@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{EncodedImage, ImageError};
 use wayfix_visual_tracking::{TargetEstimate, TrackStatus};
 
-use super::super::{TargetColors, TargetTruth, TrackFrameResult};
+use super::super::{TargetColorDistribution, TargetTruth, TrackFrameResult};
 use super::{decimated::Decimated, overlay};
 
 /// Maximum number of film frames.
@@ -12,10 +12,10 @@ const MOST_CLOUDS: usize = 6;
 const JPEG_QUALITY: u8 = 85;
 
 /// Data of a run kept for the pictures, of bounded size.
-pub struct RunHistory {
+pub struct TrackRunHistory {
     pub(in crate::track) film: Decimated<(usize, EncodedImage)>,
     pub(in crate::track) points: Decimated<Point>,
-    pub(in crate::track) clouds: Decimated<(usize, TargetColors)>,
+    pub(in crate::track) clouds: Decimated<(usize, TargetColorDistribution)>,
     pub(in crate::track) frame_size: (u32, u32),
 }
 
@@ -25,10 +25,10 @@ pub(in crate::track) struct Point {
     pub(in crate::track) index: usize,
     pub(in crate::track) iou: Option<f64>,
     pub(in crate::track) quality: f64,
-    pub(in crate::track) colors: Option<TargetColors>,
+    pub(in crate::track) colors: Option<TargetColorDistribution>,
 }
 
-impl Default for RunHistory {
+impl Default for TrackRunHistory {
     fn default() -> Self {
         Self {
             film: Decimated::new(MOST_FRAMES),
@@ -39,7 +39,7 @@ impl Default for RunHistory {
     }
 }
 
-impl RunHistory {
+impl TrackRunHistory {
     /// Adds the next frame.
     ///
     /// # Errors

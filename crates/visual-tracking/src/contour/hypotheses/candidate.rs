@@ -1,5 +1,5 @@
 use super::super::{SegmentationAgreement, scene::Scene};
-use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges, TrackingCues};
+use crate::{AffineMap, ColorEdges, ColorState, MaskEdges, PixelConnectivity, PixelMask, TrackingCues};
 
 /// Estimate of the target under a hypothesis about its colours.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ impl Candidate {
     }
 
     /// Scores a segmentation of the target, with the snake fitted from a start.
-    pub(in crate::contour) fn of_mask(scene: &Scene<'_>, start: &AffineMap, mask: &BitMask) -> Self {
+    pub(in crate::contour) fn of_mask(scene: &Scene<'_>, start: &AffineMap, mask: &PixelMask) -> Self {
         let params = scene.params;
         let (map, area, affine) = match params.cues {
             TrackingCues::Color => {
@@ -37,7 +37,7 @@ impl Candidate {
             affine,
             area: SegmentationAgreement::of_areas(scene.expected_area, area),
             quality: SegmentationAgreement::of_euler_number(
-                mask.euler_number(Connectivity::Eight),
+                mask.euler_number(PixelConnectivity::Eight),
                 params.euler_number_range,
             ),
         };
@@ -65,7 +65,7 @@ fn in_sight(visible: f64) -> f64 {
 }
 
 /// The last place, moved to the middle of a blob and scaled to its area.
-fn blob_map(scene: &Scene<'_>, mask: &BitMask, area: f64) -> AffineMap {
+fn blob_map(scene: &Scene<'_>, mask: &PixelMask, area: f64) -> AffineMap {
     let last = scene.reference.snake.map();
     let scale = (area / scene.reference.snake.area_at(last)).sqrt();
     match mask.centroid() {

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::super::{scene::Scene, search::black};
 use super::candidate::Candidate;
-use crate::{BitMask, ColorState, PrincipalColors, TrackingError};
+use crate::{ColorState, PixelMask, PrincipalColors, TrackingError};
 
 /// Difference of equal colours, as a share of an axis: noise, and changes of light other than intensity.
 const SAME: f64 = 0.02;
@@ -20,7 +20,7 @@ impl Scene<'_> {
         &self,
         state: &ColorState,
         candidate: &Candidate,
-        mask: &BitMask,
+        mask: &PixelMask,
     ) -> Result<f64, TrackingError> {
         let inside = self.interior(candidate, mask)?;
         let seen: Vec<Vector3<f64>> = self.colors_in(&inside).map(|(_, color)| color.into()).collect();

@@ -15,7 +15,7 @@ use super::super::{
 use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
-    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
+    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
     system::{RunStep, Stopwatch, System},
 };
 
@@ -121,7 +121,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut particles = ParticleFilm::new(color::n_images(&records));
+    let mut particles = ParticleSnapshots::new(color::n_images(&records));
     let bar = terminal::bar(records.len(), "colour localization");
     let start = arguments.start.map(|start| start.0);
     let color = color::run(
@@ -156,7 +156,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;
 
-fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleFilm) -> Result<Vec<SvgPlot>> {
+fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleSnapshots) -> Result<Vec<SvgPlot>> {
     let mut plots = color::plots(color)?;
     plots.push(particles.draw(color)?);
     plots.push(color::film(color, records, FILM_FRAMES)?);

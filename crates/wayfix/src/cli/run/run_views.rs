@@ -14,7 +14,7 @@ use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     system::Stopwatch,
-    views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup, ViewsParams},
+    views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams},
 };
 
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
@@ -127,7 +127,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let mut outputs = Outputs::open("views", &arguments.common)?;
     let stopwatch = Stopwatch::start();
-    let setup = ViewSetup {
+    let setup = ViewSystemConfig {
         view: arguments.view as usize,
         step: arguments.step as usize,
         feature: arguments.feature,

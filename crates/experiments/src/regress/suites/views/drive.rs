@@ -3,15 +3,15 @@ use anyhow::Result;
 use super::{scenes::Scenes, settings::Settings};
 use crate::regress::PlannedJob;
 use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::views::{self, DescriptorKind, ViewSetup, ViewSystem, ViewsParams};
+use wayfix_systems::views::{self, DescriptorKind, ViewSystem, ViewSystemConfig, ViewsParams};
 
 /// The paper's features with every normalization, on one scene. Figures are named after both; pictures are those of the last.
 pub(super) fn drive(
     job: &PlannedJob<'_>,
     settings: &Settings,
     scenes: &Scenes,
-    statistics: impl Fn(&ViewSetup, &ViewSystem) -> Result<Vec<Metric>>,
-    beside: impl Fn(&ViewSetup, Metric) -> Metric,
+    statistics: impl Fn(&ViewSystemConfig, &ViewSystem) -> Result<Vec<Metric>>,
+    beside: impl Fn(&ViewSystemConfig, Metric) -> Metric,
 ) -> Result<ReportRun> {
     let (params, seed) = (ViewsParams::default(), job.options.seed);
     let mut all = ReportRun {

@@ -4,7 +4,7 @@ use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
 use super::settings::{ImagingConditionsKind, Settings};
 use crate::regress::PlannedJob;
-use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup};
+use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig};
 
 /// The learned scene and the real one, and their views.
 pub(super) struct Scenes {
@@ -45,7 +45,11 @@ impl Scenes {
         Ok(Self { learned, real, view: Scenery::VIEW_PX, step: scenery.step_px })
     }
 
-    pub(super) fn setup(&self, feature: DescriptorKind, normalization: LightNormalization) -> ViewSetup {
-        ViewSetup { view: self.view, step: self.step, feature, normalization }
+    pub(super) fn setup(
+        &self,
+        feature: DescriptorKind,
+        normalization: LightNormalization,
+    ) -> ViewSystemConfig {
+        ViewSystemConfig { view: self.view, step: self.step, feature, normalization }
     }
 }

@@ -10,7 +10,7 @@ use crate::cli::{
     common::Common,
     input::{Topics, name_of},
 };
-use wayfix_systems::cml::{CmlTask, recording::ColumnNames};
+use wayfix_systems::cml::{CmlTask, recording::PoseTableColumns};
 
 /// Appearance maps: learn places by panoramic images, and localize in the map.
 ///
@@ -50,10 +50,10 @@ pub(crate) struct Arguments {
     pub(super) poses: Option<PathBuf>,
     /// Names of the columns of a table of poses that has none, as in t_ms,x_cm,y_cm.
     #[arg(long, value_name = "NAMES", requires = "frames")]
-    pub(super) columns: Option<ColumnNames>,
+    pub(super) columns: Option<PoseTableColumns>,
     /// Names of the columns of a table of times that has none, as in t_s,file.
     #[arg(long, value_name = "NAMES", requires = "frames")]
-    pub(super) stamp_columns: Option<ColumnNames>,
+    pub(super) stamp_columns: Option<PoseTableColumns>,
     /// The table of `time, file` of the frames [default: the one beside them].
     #[arg(long, value_name = "FILE", requires = "frames")]
     pub(super) stamps: Option<PathBuf>,

@@ -24,8 +24,8 @@ use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     cml::{
-        self, CameraReadingMode, CmlEstimateLog, CmlParams, CmlRunPlan, CmlSystem, CmlTask, MapSaver,
-        PanoramaMap, StartPlace, ViewReader,
+        self, CameraReadingMode, CmlEstimateLog, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
+        PanoramaMap, PeriodicMapSaver, ViewReader,
         recording::{FrameRecording, PoseTables},
     },
     system::{RunStep, Stopwatch, System},
@@ -50,7 +50,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let mut outputs = Outputs::open("cml", &arguments.common)?;
     let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
-    let mut saver = arguments.save.clone().map(|path| MapSaver::new(path, arguments.save_every));
+    let mut saver = arguments.save.clone().map(|path| PeriodicMapSaver::new(path, arguments.save_every));
     let bar = terminal::bar(plan.records.len(), "appearance map");
     let run = cml::run(
         system,
@@ -72,7 +72,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         saver.finish(&run.system).context("cannot save the map")?;
     }
     if let Some(path) = &arguments.map_out {
-        MapSaver::new(path.clone(), None).finish(&run.system).context("cannot write the map")?;
+        PeriodicMapSaver::new(path.clone(), None).finish(&run.system).context("cannot write the map")?;
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
@@ -165,7 +165,7 @@ impl Arguments {
         mut reader: ViewReader,
         saved: Option<MapArchive>,
         plan: &mut CmlRunPlan,
-    ) -> Result<(CmlSystem, StartPlace)> {
+    ) -> Result<(CmlSystem, CmlStartPose)> {
         let first = cml::first_true_pose(&plan.records);
         let mut state = None;
         let mut map = PanoramaMap::default();
@@ -178,16 +178,16 @@ impl Arguments {
         let start = match (self.start, task, first) {
             _ if self.resume.is_some() => {
                 let state = state.context("the file does not say where the robot was: give it as --map")?;
-                StartPlace::Saved(Start::Among(state))
+                CmlStartPose::Saved(Start::Among(state))
             }
-            (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
-            (Some(StartArgument::At(pose)), CmlTask::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
-            (Some(StartArgument::At(pose)), ..) => StartPlace::Near(pose),
+            (Some(StartArgument::Anywhere), ..) => CmlStartPose::Anywhere,
+            (Some(StartArgument::At(pose)), CmlTask::ConcurrentMapBuilding, _) => CmlStartPose::Exactly(pose),
+            (Some(StartArgument::At(pose)), ..) => CmlStartPose::Near(pose),
             (None, CmlTask::ConcurrentMapBuilding, first) => {
-                StartPlace::Exactly(first.unwrap_or(Pose2::new(0.0, 0.0, 0.0)))
+                CmlStartPose::Exactly(first.unwrap_or(Pose2::new(0.0, 0.0, 0.0)))
             }
-            (None, _, Some(first)) => StartPlace::Near(first),
-            (None, _, None) => StartPlace::Anywhere,
+            (None, _, Some(first)) => CmlStartPose::Near(first),
+            (None, _, None) => CmlStartPose::Anywhere,
         };
         Ok((CmlSystem::new(params, reader, map)?, start))
     }
