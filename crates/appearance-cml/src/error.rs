@@ -50,7 +50,7 @@ pub enum AppearanceMapError {
     },
     /// The ring of a raw omnidirectional image is none, or reaches beyond the image.
     #[error("a ring of radii {radii:?} about {center:?} in an image of {} × {} pixels", image.0, image.1)]
-    Donut {
+    OmnidirectionalRing {
         /// Centre, pixels.
         center: [f64; 2],
         /// Inner and outer radius, pixels.

@@ -5,8 +5,8 @@
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::film::{FilmFrame, OcclusionEvent, Silhouette, SyntheticFilm};
 
-fn shown(name: &str, incident: OcclusionEvent) -> impl Iterator<Item = FilmFrame> {
-    SyntheticFilm { occlusion: incident, ..SyntheticFilm::named(name).unwrap() }.frames().unwrap()
+fn shown(name: &str, occlusion: OcclusionEvent) -> impl Iterator<Item = FilmFrame> {
+    SyntheticFilm { occlusion, ..SyntheticFilm::named(name).unwrap() }.frames().unwrap()
 }
 
 /// Mean red, green and blue where a silhouette is.
@@ -127,8 +127,8 @@ fn the_neck_goes_in_and_out_and_looks_like_the_shell() {
 #[test]
 fn incidents_hide_the_target_or_take_it_away_and_end() {
     for name in ["circles", "beetle"] {
-        let seen = |incident| -> Vec<(usize, usize)> {
-            shown(name, incident).map(|frame| (frame.visible.area(), frame.target.area())).collect()
+        let seen = |occlusion| -> Vec<(usize, usize)> {
+            shown(name, occlusion).map(|frame| (frame.visible.area(), frame.target.area())).collect()
         };
         let share = |&(visible, target): &(usize, usize)| visible as f64 / target as f64;
         let partly = seen(OcclusionEvent::PartlyHidden);

@@ -214,7 +214,7 @@ fn dynamics_of_ones_own_are_used() {
     let still = ColorDynamics::constant_velocity(0.0, &ColorStateVector::zeros()).unwrap();
     let params = ContourTrackerParams {
         background_odds: 0.0,
-        color_memory: 0.0,
+        previous_colors_weight: 0.0,
         anchored_share: 0.0,
         ..ContourTrackerParams::default()
     };

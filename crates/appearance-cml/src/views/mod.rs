@@ -7,12 +7,12 @@
 mod correlation;
 mod cosines;
 mod descriptor;
-mod donut;
 mod features;
 mod invariants;
 mod lanes;
 mod low_harmonics;
 mod normalization;
+mod omnidirectional_ring;
 mod panorama;
 mod params;
 mod probe;
@@ -20,9 +20,9 @@ mod sectors;
 mod table;
 
 pub use descriptor::PanoramaDescriptor;
-pub use donut::{OmnidirectionalRing, RingOrientation};
 pub use features::PanoramaFeatures;
 pub use normalization::{BrightnessNormalization, IntensityScale};
+pub use omnidirectional_ring::{OmnidirectionalRing, RingOrientation};
 pub use panorama::{AzimuthDirection, Panorama};
 pub use params::PanoramaParams;
 pub use probe::PanoramaQuery;

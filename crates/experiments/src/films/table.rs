@@ -52,7 +52,7 @@ pub fn table(
     Ok(ReportRun { metrics, timings, figures, notes, ..ReportRun::default() })
 }
 
-fn over_seeds(scores: &[&FilmTrackingScore], incident: OcclusionEvent) -> Vec<Metric> {
+fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<Metric> {
     let all = |values: fn(&FilmTrackingScore) -> &Vec<f64>| -> Vec<f64> {
         scores.iter().flat_map(|score| values(score)).copied().collect()
     };
@@ -80,7 +80,7 @@ fn over_seeds(scores: &[&FilmTrackingScore], incident: OcclusionEvent) -> Vec<Me
     if !necks.is_empty() {
         metrics.push(Metric::new("distractor_share_mean", mean(&necks), ""));
     }
-    if incident != OcclusionEvent::None {
+    if occlusion != OcclusionEvent::None {
         let found = scores.iter().filter(|score| score.is_correct_at_end(N_END)).count();
         metrics.push(Metric::new("reacquired_share", found as f64 / scores.len() as f64, ""));
     }

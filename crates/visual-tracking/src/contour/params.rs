@@ -49,7 +49,7 @@ pub struct ContourTrackerParams {
     pub background_odds: f64,
     /// Weight of the previous colours in the set of colours, adapted to the change of light, so that a part of the target missed by one
     /// contour is kept. 0 drops them, as in the paper. Default 0.8.
-    pub color_memory: f64,
+    pub previous_colors_weight: f64,
     /// Most points in a colour set. Default 512.
     pub max_colors: usize,
     /// $`μ_1, μ_2, μ_3`$: weights of the affine similarity, the area and the Euler number. Default 1, 1, 0.5.
@@ -60,7 +60,7 @@ pub struct ContourTrackerParams {
     pub area_extrapolation: f64,
     /// Weight of the mean area of the last seconds in the predicted area, against gradual shrinking or growing of the contour; 0 as in the
     /// paper. Default 0.3.
-    pub area_memory: f64,
+    pub mean_area_weight: f64,
     /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
     pub euler_number_range: f64,
     /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
@@ -91,12 +91,12 @@ impl Default for ContourTrackerParams {
             velocity_retention: 0.5,
             color_state_noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
             background_odds: 1.0,
-            color_memory: 0.8,
+            previous_colors_weight: 0.8,
             max_colors: 512,
             quality_weights: [1.0, 1.0, 0.5],
             quality_sigma: 0.15,
             area_extrapolation: 0.5,
-            area_memory: 0.3,
+            mean_area_weight: 0.3,
             euler_number_range: 10.0,
             morphology_radius: 1,
             snake: SnakeParams::default(),
@@ -115,9 +115,9 @@ impl ContourTrackerParams {
     pub fn as_published() -> Self {
         Self {
             background_odds: 0.0,
-            color_memory: 0.0,
+            previous_colors_weight: 0.0,
             area_extrapolation: 1.0,
-            area_memory: 0.0,
+            mean_area_weight: 0.0,
             anchored_share: 0.0,
             color_bins: [16; 3],
             ..Self::default()
@@ -135,8 +135,8 @@ impl ContourTrackerParams {
         count("n_search_samples", self.n_search_samples, 1_000_000)?;
         for (what, value) in [
             ("anchored_share", self.anchored_share),
-            ("color_memory", self.color_memory),
-            ("area_memory", self.area_memory),
+            ("previous_colors_weight", self.previous_colors_weight),
+            ("mean_area_weight", self.mean_area_weight),
             ("lost_below", self.lost_below),
             ("found_above", self.found_above),
         ] {

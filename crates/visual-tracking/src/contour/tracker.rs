@@ -80,7 +80,7 @@ impl ContourTracker {
         if let Some(cloud) = found.cloud {
             let before = reference.colors;
             reference.colors = cloud.principal(Some(&before))?;
-            let (memory, now) = (self.params.color_memory, &reference.colors);
+            let (memory, now) = (self.params.previous_colors_weight, &reference.colors);
             reference.cloud =
                 cloud.with_memory_of(&reference.cloud, [&before, now], memory, self.params.max_colors)?;
             samples.measure(&before, &reference.colors);

@@ -23,8 +23,8 @@ impl CorrelationTracker {
 
     /// Looks for a lost target around where it was, in a few other places of the picture in turn, and turned; the quality.
     pub(super) fn search(&mut self, picture: &RgbImage) -> f64 {
-        let first = self.n_lost * self.params.n_searches;
-        let others = (first..first + self.params.n_searches).map(|turn| self.place(turn));
+        let first = self.n_lost * self.params.n_search_places;
+        let others = (first..first + self.params.n_search_places).map(|turn| self.place(turn));
         let centers: Vec<[f64; 2]> = std::iter::once(self.pose.center).chain(others).collect();
         self.n_lost += 1;
         for center in centers {

@@ -52,9 +52,9 @@ pub struct CorrelationTrackerParams {
     /// Share of the typical colour agreement below which a target must also be recognized by its shape. Default 0.5.
     pub color_agreement_share: f64,
     /// Images after which a changed target is accepted, if its old appearance is not found in another place. Default 60.
-    pub forget_after: usize,
+    pub accept_change_after: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
-    pub n_searches: usize,
+    pub n_search_places: usize,
 }
 
 impl Default for CorrelationTrackerParams {
@@ -78,8 +78,8 @@ impl Default for CorrelationTrackerParams {
             recognize_above_psr: 15.0,
             recognition_response_share: 0.5,
             color_agreement_share: 0.5,
-            forget_after: 60,
-            n_searches: 2,
+            accept_change_after: 60,
+            n_search_places: 2,
         }
     }
 }
@@ -121,8 +121,8 @@ impl CorrelationTrackerParams {
         ] {
             checked(what, value, value >= 0.0, "not negative")?;
         }
-        let n_searches = self.n_searches as f64;
-        checked("number of searches", n_searches, self.n_searches <= 100, "at most 100")?;
+        let n_search_places = self.n_search_places as f64;
+        checked("number of searches", n_search_places, self.n_search_places <= 100, "at most 100")?;
         Ok(())
     }
 }

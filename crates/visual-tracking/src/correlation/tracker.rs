@@ -230,7 +230,7 @@ impl CorrelationTracker {
         self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
         let agreement = self.agreement(sample);
         let may_be_another =
-            !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.forget_after;
+            !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.accept_change_after;
         if evidence.peak_to_sidelobe < self.params.learn_above_psr || may_be_another {
             return;
         }
@@ -246,7 +246,7 @@ impl CorrelationTracker {
         let size = window.size(self.pose.scale);
         self.scales.learn(picture, self.pose.center, size, self.params.scale_filter_rate as f32);
         self.learned.clone_from(&sample.patch);
-        if recognized || self.n_untrusted > self.params.forget_after {
+        if recognized || self.n_untrusted > self.params.accept_change_after {
             self.trusted.clone_from(&self.current);
             self.n_untrusted = 0;
             let value = if recognized { trust.value } else { evidence.value };

@@ -24,7 +24,7 @@ pub struct HeadTrackerParams {
     /// Rate $`a`$ at which the colours adapt. [Eq. 29] Default 0.1.
     pub color_adaptation_rate: f64,
     /// Intersection above which they do. Default 0.6.
-    pub adapt_above: f64,
+    pub adapt_above_intersection: f64,
     /// Intersection below which there is no evidence of the head. Default 0.3.
     pub no_evidence_below: f64,
     /// Pictures in a row without evidence after which the head is lost. Default 8.
@@ -40,7 +40,7 @@ impl Default for HeadTrackerParams {
             scale_step: 1.04,
             gradient_weight: 0.25,
             color_adaptation_rate: 0.1,
-            adapt_above: 0.6,
+            adapt_above_intersection: 0.6,
             no_evidence_below: 0.3,
             lost_after: 8,
         }
@@ -60,7 +60,7 @@ impl HeadTrackerParams {
         for (what, value) in [
             ("gradient weight", self.gradient_weight),
             ("adaptation", self.color_adaptation_rate),
-            ("intersection to adapt", self.adapt_above),
+            ("intersection to adapt", self.adapt_above_intersection),
             ("intersection for doubt", self.no_evidence_below),
         ] {
             probability(what, value)?;

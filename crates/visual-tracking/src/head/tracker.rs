@@ -166,7 +166,7 @@ impl<S: ScaleSource> HeadTracker<S> {
 
     fn accept(&mut self, bins: &ColorBinImage, candidate: Candidate) -> Result<(), TrackingError> {
         let HeadState { center, is_lost, .. } = self.state;
-        if is_lost && candidate.color < self.params.adapt_above {
+        if is_lost && candidate.color < self.params.adapt_above_intersection {
             return Ok(());
         }
         if candidate.color < self.params.no_evidence_below {
@@ -183,7 +183,7 @@ impl<S: ScaleSource> HeadTracker<S> {
             n_without_evidence: 0,
             is_lost: false,
         };
-        if candidate.color >= self.params.adapt_above {
+        if candidate.color >= self.params.adapt_above_intersection {
             let spans = RowSpans::ellipse(candidate.semi_axes)?;
             let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
             self.model.adapt(histogram.counts(), self.params.color_adaptation_rate);

@@ -1,13 +1,15 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 136] = [
+const RENAMED: [(&str, &str); 141] = [
     ("accept", "gate_nis"),
     ("active", "active_forgetting"),
+    ("adapt_above", "adapt_above_intersection"),
     ("adaptation", "color_adaptation_rate"),
     ("adapts", "adapts_colors"),
     ("alike_share", "color_agreement_share"),
     ("area_gain", "area_extrapolation"),
+    ("area_memory", "mean_area_weight"),
     ("background", "background_model"),
     ("bearing", "bearing_sigma"),
     ("bearing_per_extent", "bearing_sigma_per_extent"),
@@ -16,6 +18,7 @@ const RENAMED: [(&str, &str); 136] = [
     ("certainly_new", "new_landmark_nis"),
     ("choice", "action_selection"),
     ("clutter", "mean_clutter"),
+    ("color_memory", "previous_colors_weight"),
     ("color_rate", "color_histogram_rate"),
     ("color_share", "color_channel_share"),
     ("color_weight", "color_histogram_weight"),
@@ -38,6 +41,7 @@ const RENAMED: [(&str, &str); 136] = [
     ("first_kernel_m", "initial_kernel_m"),
     ("floor", "log_likelihood_floor"),
     ("floor", "min_variance_share"),
+    ("forget_after", "accept_change_after"),
     ("forgetting", "forgetting_mode"),
     ("forward", "forward_sigma_per_meter"),
     ("found_from", "found_above"),
@@ -82,6 +86,7 @@ const RENAMED: [(&str, &str); 136] = [
     ("moved_per_km", "kidnappings_per_km"),
     ("mu", "quality_weights"),
     ("n_scales", "n_scale_hypotheses"),
+    ("n_searches", "n_search_places"),
     ("n_sightings", "n_detections"),
     ("n_trials", "max_pairings"),
     ("never_twice", "one_detection_per_landmark"),

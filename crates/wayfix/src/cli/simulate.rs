@@ -27,9 +27,9 @@ pub(super) enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
         /// Event that affects the target during the film.
-        #[arg(long, value_name = "WHAT", default_value = OcclusionEvent::None.name(),
+        #[arg(long, alias = "incident", value_name = "WHAT", default_value = OcclusionEvent::None.name(),
               value_parser = PossibleValuesParser::new(OcclusionEvent::ALL.map(OcclusionEvent::name)))]
-        incident: String,
+        occlusion: String,
         /// Number of frames, 25 per second.
         #[arg(long, value_name = "N", default_value_t = 175)]
         frames: usize,
@@ -57,10 +57,10 @@ Examples:
 
 pub(super) fn main(command: Command) -> Result<ExitCode> {
     match command {
-        Command::Film { name, out, incident, frames, seed } => {
+        Command::Film { name, out, occlusion, frames, seed } => {
             let film = SyntheticFilm {
                 n_frames: frames,
-                occlusion: OcclusionEvent::named(&incident)?,
+                occlusion: OcclusionEvent::named(&occlusion)?,
                 seed,
                 ..SyntheticFilm::named(&name)?
             };

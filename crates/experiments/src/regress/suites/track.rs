@@ -19,7 +19,7 @@ struct Settings {
     /// A simulated film, instead of `data`.
     film: Option<String>,
     /// Event that affects the target.
-    incident: Option<String>,
+    occlusion: Option<String>,
     /// Number of seeds.
     #[serde(default = "twenty")]
     n_seeds: u64,
@@ -56,8 +56,8 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 }
 
 fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportRun> {
-    let incident = settings.incident.as_deref().map(OcclusionEvent::named).transpose()?.unwrap_or_default();
-    let mut film = SyntheticFilm { occlusion: incident, ..SyntheticFilm::named(name)? };
+    let occlusion = settings.occlusion.as_deref().map(OcclusionEvent::named).transpose()?.unwrap_or_default();
+    let mut film = SyntheticFilm { occlusion, ..SyntheticFilm::named(name)? };
     let mut n_seeds = settings.n_seeds;
     if job.options.quick {
         (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);

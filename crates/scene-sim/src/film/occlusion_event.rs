@@ -30,12 +30,12 @@ impl OcclusionEvent {
         }
     }
 
-    /// The incident of that name.
+    /// The event of that name.
     ///
     /// # Errors
     /// Returns [`SimulationError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimulationError> {
-        let found = Self::ALL.into_iter().find(|incident| incident.name() == name);
+        let found = Self::ALL.into_iter().find(|event| event.name() == name);
         found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 

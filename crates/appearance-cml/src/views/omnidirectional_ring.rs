@@ -47,7 +47,7 @@ impl OmnidirectionalRing {
     /// whose middles lie in it, whatever its size. A cell without any, which is smaller than a pixel, is the pixel at its middle.
     ///
     /// # Errors
-    /// [`AppearanceMapError::PixelCount`] when the pixels are not `width · height` or the panorama has none, [`AppearanceMapError::Donut`] when radii
+    /// [`AppearanceMapError::PixelCount`] when the pixels are not `width · height` or the panorama has none, [`AppearanceMapError::OmnidirectionalRing`] when radii
     /// or centre are not finite, not 0 ≤ inner < outer, or the ring does not lie inside the image.
     pub fn unwrap_image(
         &self,
@@ -88,7 +88,11 @@ impl OmnidirectionalRing {
         if is_ring && inside(self.center[0], width) && inside(self.center[1], height) {
             return Ok(());
         }
-        Err(AppearanceMapError::Donut { center: self.center, radii: self.radii, image: (width, height) })
+        Err(AppearanceMapError::OmnidirectionalRing {
+            center: self.center,
+            radii: self.radii,
+            image: (width, height),
+        })
     }
 
     /// The cell of the panorama that a pixel lies in, if it lies in the ring.
@@ -254,7 +258,7 @@ mod tests {
             OmnidirectionalRing { center: [f64::NAN, 50.0], ..good },
         ] {
             let refused = bad.unwrap_image(SIZE, SIZE, &image(), 8, 2);
-            assert!(matches!(refused, Err(AppearanceMapError::Donut { .. })), "{bad:?}");
+            assert!(matches!(refused, Err(AppearanceMapError::OmnidirectionalRing { .. })), "{bad:?}");
         }
         assert!(good.unwrap_image(SIZE, SIZE, &image()[1..], 8, 2).is_err());
         assert!(good.unwrap_image(0, 0, &[], 8, 2).is_err());
