@@ -151,12 +151,12 @@ fn another_version_and_other_parameters_are_named() {
                 views: PanoramaParams { intensity_scale: IntensityScale::Linear, ..good.views },
                 ..good
             },
-            "tone",
+            "intensity_scale",
         ),
         (MapArchiveParams { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good }, "n_harmonics"),
         (
             MapArchiveParams { views: PanoramaParams { smoothing_sigma: 0.0, ..good.views }, ..good },
-            "smoothing",
+            "smoothing_sigma",
         ),
     ] {
         let refused = MapArchive::from_bytes(&bytes()).unwrap().into_map::<AppearanceIndex<_>>(&params);

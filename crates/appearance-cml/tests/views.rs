@@ -152,8 +152,8 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { n_sectors: 2, ..good }, "n_sectors"),
         (PanoramaParams { n_harmonics: 1, ..good }, "n_harmonics"),
         (PanoramaParams { n_harmonics: 61, ..good }, "n_harmonics"),
-        (PanoramaParams { smoothing_sigma: f64::NAN, ..good }, "smoothing"),
-        (PanoramaParams { smoothing_sigma: -1.0, ..good }, "smoothing"),
+        (PanoramaParams { smoothing_sigma: f64::NAN, ..good }, "smoothing_sigma"),
+        (PanoramaParams { smoothing_sigma: -1.0, ..good }, "smoothing_sigma"),
         (PanoramaParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
         (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
     ] {

@@ -71,10 +71,10 @@ impl MapArchiveParams {
                 ("n_rings", views.n_rings.to_string()),
                 ("n_sectors", views.n_sectors.to_string()),
                 ("n_harmonics", views.n_harmonics.to_string()),
-                ("smoothing", views.smoothing_sigma.to_string()),
-                ("tone", format!("{:?}", views.intensity_scale)),
-                ("normalization", format!("{:?}", views.brightness_normalization)),
-                ("sense", format!("{:?}", views.azimuth_direction)),
+                ("smoothing_sigma", views.smoothing_sigma.to_string()),
+                ("intensity_scale", format!("{:?}", views.intensity_scale)),
+                ("brightness_normalization", format!("{:?}", views.brightness_normalization)),
+                ("azimuth_direction", format!("{:?}", views.azimuth_direction)),
                 ("size of the panorama", format!("{} × {}", params.size.0, params.size.1)),
             ]
         };

@@ -148,13 +148,16 @@ impl AppearanceMapParams {
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::positive("match limit", self.match_limit.unwrap_or(1.0))?;
         check::share("share of the match limit", self.match_limit_fraction)?;
-        check::positive("insertion distance", self.insertion_distance_factor)?;
+        check::positive("insertion_distance_factor", self.insertion_distance_factor)?;
         check::share("learning rate", self.learning_rate)?;
         check::not_negative("merge distance of places", self.merge_distance)?;
         check::positive("gate of places", self.place_gate)?;
         check::share("rate of forgetting", self.active_forgetting.rate)?;
         check::positive("radius of forgetting (m)", self.active_forgetting.radius.unwrap_or(1.0))?;
-        check::positive("gain of forgetting (m)", self.active_forgetting.full_rate_sigma.unwrap_or(1.0))?;
+        check::positive(
+            "full_rate_sigma of forgetting (m)",
+            self.active_forgetting.full_rate_sigma.unwrap_or(1.0),
+        )?;
         check::share("least weight of a place", self.min_weight)?;
         check::positive("greatest count of a place", self.max_observation_count)?;
         check::count("references to keep", self.max_references)

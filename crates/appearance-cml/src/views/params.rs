@@ -55,7 +55,7 @@ impl PanoramaParams {
         whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
         whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;
         self.check_harmonics(self.n_sectors)?;
-        check::not_negative("smoothing", self.smoothing_sigma)?;
+        check::not_negative("smoothing_sigma", self.smoothing_sigma)?;
         check::share("min_contrast", self.min_contrast)?;
         check::share("max_saturated", self.max_saturated)
     }

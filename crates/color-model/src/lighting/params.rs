@@ -75,8 +75,8 @@ impl LightingFilterParams {
                 Err(ColorModelError::OutOfRange { what, value })
             }
         };
-        self.pixel_color_variance.iter().try_for_each(|v| within("variance of a pixel", *v, 1e-12))?;
-        self.mean_color_variance.iter().try_for_each(|v| within("variance of an image's mean", *v, 1e-12))?;
+        self.pixel_color_variance.iter().try_for_each(|v| within("pixel_color_variance", *v, 1e-12))?;
+        self.mean_color_variance.iter().try_for_each(|v| within("mean_color_variance", *v, 1e-12))?;
         match self.lighting_drift {
             LightingDrift::TowardsPrior(seconds) => within("time constant of the drift (s)", seconds, 1e-12),
             LightingDrift::RandomWalk(rate) => rate.iter().try_for_each(|v| within("drift rate", *v, 0.0)),

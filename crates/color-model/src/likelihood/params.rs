@@ -128,20 +128,23 @@ impl PixelLikelihoodParams {
         let Self {
             independent_pixels,
             outlier_share,
-            log_likelihood_floor: floor,
-            uniform_background_share: uniform_share,
+            log_likelihood_floor,
+            uniform_background_share,
+            brightness_variation,
+            chroma_variation,
             ..
         } = *self;
         check(
-            "independent pixels",
+            "independent_pixels",
             independent_pixels,
             independent_pixels > 0.0 && independent_pixels.is_finite(),
         )?;
-        check("share of outliers", outlier_share, is_share(outlier_share))?;
-        check("floor of a colour", floor, floor > 0.0)?;
-        check("uniform share of the background", uniform_share, is_share(uniform_share))?;
-        let Self { brightness_variation: uneven_brightness, chroma_variation: uneven_chroma, .. } = *self;
-        for (what, value) in [("uneven brightness", uneven_brightness), ("uneven chroma", uneven_chroma)] {
+        check("outlier_share", outlier_share, is_share(outlier_share))?;
+        check("log_likelihood_floor", log_likelihood_floor, log_likelihood_floor > 0.0)?;
+        check("uniform_background_share", uniform_background_share, is_share(uniform_background_share))?;
+        for (what, value) in
+            [("brightness_variation", brightness_variation), ("chroma_variation", chroma_variation)]
+        {
             check(what, value, value >= 0.0 && value.is_finite())?;
         }
         Ok(())

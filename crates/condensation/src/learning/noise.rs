@@ -23,13 +23,13 @@ impl Default for NoiseCovarianceParams {
 impl NoiseCovarianceParams {
     pub(super) fn check(&self) -> Result<(), CondensationError> {
         checked(
-            "pooling",
+            "pooled_share",
             self.pooled_share,
             self.pooled_share > 0.0 && self.pooled_share <= 1.0,
             "in (0, 1]",
         )?;
         checked(
-            "noise floor",
+            "min_variance_share",
             self.min_variance_share,
             self.min_variance_share >= 0.0 && self.min_variance_share.is_finite(),
             "finite and not negative",

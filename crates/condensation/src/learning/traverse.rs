@@ -66,13 +66,13 @@ impl RouteTraverse {
         params: &RouteTraverseParams,
     ) -> Result<Self, CondensationError> {
         let lag = checked(
-            "tolerance",
+            "same_place_tolerance",
             params.same_place_tolerance as f64,
             params.same_place_tolerance > 0,
             "at least 1",
         )? as usize;
         let floor = params.min_variance_share;
-        checked("noise floor", floor, floor.is_finite() && floor >= 0.0, "finite and not negative")?;
+        checked("min_variance_share", floor, floor.is_finite() && floor >= 0.0, "finite and not negative")?;
         params.likelihood_tail.check()?;
         let n_pairs = features.n_states().saturating_sub(lag);
         if n_pairs == 0 {

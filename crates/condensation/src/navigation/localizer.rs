@@ -65,8 +65,8 @@ impl ViewLocalizer {
         appearance: Arc<AppearanceModel>,
         params: ViewLocalizerParams,
     ) -> Result<Self, CondensationError> {
-        probability("leak", params.kidnapping_probability)?;
-        probability("drift", params.disturbance_drift)?;
+        probability("kidnapping_probability", params.kidnapping_probability)?;
+        probability("disturbance_drift", params.disturbance_drift)?;
         let n_places = appearance.n_states();
         let n = n_places * appearance.n_conditions();
         Ok(Self {

@@ -81,7 +81,7 @@ impl<S: StateSpace> Navigator<S> {
         check_size("list of transitions", space.actions().len(), transitions.len())?;
         let confidence = params.goal_confidence;
         checked(
-            "confidence",
+            "goal_confidence",
             confidence,
             confidence > 0.0 && confidence < 1.0,
             "between 0 and 1, both excluded",

@@ -150,7 +150,7 @@ impl ContourTrackerParams {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }
         for (what, value) in [
-            ("sigma", self.quality_sigma),
+            ("quality_sigma", self.quality_sigma),
             ("euler_number_range", self.euler_number_range),
             ("sum of mu", self.quality_weights.iter().sum()),
         ] {

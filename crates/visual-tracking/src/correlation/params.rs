@@ -88,11 +88,11 @@ impl CorrelationTrackerParams {
     pub(super) fn validate(&self) -> Result<(), TrackingError> {
         let positive = |what, value: f64| checked(what, value, value > 0.0 && value.is_finite(), "positive");
         checked("padding", self.padding, (1.5..=8.0).contains(&self.padding), "between 1.5 and 8")?;
-        positive("response width", self.response_width)?;
-        positive("penalty", self.domain_agreement_weight)?;
-        positive("motion width", self.motion_sigma)?;
+        positive("response_width", self.response_width)?;
+        positive("domain_agreement_weight", self.domain_agreement_weight)?;
+        positive("motion_sigma", self.motion_sigma)?;
         checked(
-            "inertia",
+            "previous_filter_weight",
             self.previous_filter_weight,
             self.previous_filter_weight >= 0.0 && self.previous_filter_weight.is_finite(),
             "not negative",
@@ -100,24 +100,24 @@ impl CorrelationTrackerParams {
         let share = self.color_channel_share + self.gray_channel_share;
         checked("colour and grey share", share, (0.0..1.0).contains(&share), "below 1")?;
         for (what, value) in [
-            ("colour share", self.color_channel_share),
-            ("grey share", self.gray_channel_share),
-            ("colour weight", self.color_histogram_weight),
-            ("colour rate", self.color_histogram_rate),
-            ("scale rate", self.scale_filter_rate),
-            ("share to recognize by", self.recognition_response_share),
-            ("share of alike colours", self.color_agreement_share),
+            ("color_channel_share", self.color_channel_share),
+            ("gray_channel_share", self.gray_channel_share),
+            ("color_histogram_weight", self.color_histogram_weight),
+            ("color_histogram_rate", self.color_histogram_rate),
+            ("scale_filter_rate", self.scale_filter_rate),
+            ("recognition_response_share", self.recognition_response_share),
+            ("color_agreement_share", self.color_agreement_share),
         ] {
             probability(what, value)?;
         }
         let odd = self.n_scale_hypotheses % 2 == 1 && self.n_scale_hypotheses <= 99;
-        checked("number of scales", self.n_scale_hypotheses as f64, odd, "odd, at most 99")?;
+        checked("n_scale_hypotheses", self.n_scale_hypotheses as f64, odd, "odd, at most 99")?;
         let step = (1.001..=1.5).contains(&self.scale_step);
-        checked("scale step", self.scale_step, step, "between 1.001 and 1.5")?;
+        checked("scale_step", self.scale_step, step, "between 1.001 and 1.5")?;
         for (what, value) in [
-            ("standing out for doubt", self.no_evidence_below),
-            ("standing out for learning", self.learn_above_psr),
-            ("standing out to recognize", self.recognize_above_psr),
+            ("no_evidence_below", self.no_evidence_below),
+            ("learn_above_psr", self.learn_above_psr),
+            ("recognize_above_psr", self.recognize_above_psr),
         ] {
             checked(what, value, value >= 0.0, "not negative")?;
         }

@@ -59,7 +59,7 @@ impl HeadTrackerParams {
         checked("scale step", self.scale_step, step, "between 1 and 1.5")?;
         for (what, value) in [
             ("gradient weight", self.gradient_weight),
-            ("adaptation", self.color_adaptation_rate),
+            ("color_adaptation_rate", self.color_adaptation_rate),
             ("intersection to adapt", self.adapt_above_intersection),
             ("intersection for doubt", self.no_evidence_below),
         ] {

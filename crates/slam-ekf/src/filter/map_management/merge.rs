@@ -34,7 +34,7 @@ impl Default for LandmarkMergingParams {
 
 impl LandmarkMergingParams {
     pub(in crate::filter) fn validated(self) -> Result<Self, SlamError> {
-        for (name, value) in [("separation", self.min_separation), ("n_sigmas", self.n_sigmas)] {
+        for (name, value) in [("min_separation", self.min_separation), ("n_sigmas", self.n_sigmas)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(SlamError::Parameter { name, value, range: "finite and not negative" });
             }
