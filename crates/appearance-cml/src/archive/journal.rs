@@ -6,7 +6,7 @@ use wayfix_gaussian_core::GaussianMixture;
 use super::{entry::Entry, map_archive::append};
 use crate::{AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, ReferenceView};
 
-/// What of a map is in the bytes already, so that only what has changed since is appended to them.
+/// Record of what an archive already holds of a map, so that only changes are appended.
 ///
 /// ```
 /// use nalgebra::Vector3;

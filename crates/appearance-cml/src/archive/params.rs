@@ -4,7 +4,7 @@ use super::{
 };
 use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaParams};
 
-/// What views must have in common to be compared: how they are described, and the size of the pictures.
+/// Parameters that a map archive and its reader must share: the descriptor and the size of the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapArchiveParams {
     /// How panoramas are described.

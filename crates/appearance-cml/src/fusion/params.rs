@@ -1,6 +1,6 @@
 use crate::{AppearanceMapError, check};
 
-/// How two Gaussians that mean one place become one.
+/// Fusion of two Gaussians of one place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -13,7 +13,7 @@ pub enum GaussianFusionRule {
     SplitIntersection,
 }
 
-/// How the weights of two mixtures become one.
+/// Weight of a fused component, from its weights in both mixtures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

@@ -12,7 +12,7 @@ pub enum ForgettingMode {
     Active,
 }
 
-/// What a view writes into the references that look like it.
+/// Measurement from which a matched reference view learns its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

@@ -1,6 +1,6 @@
 use crate::AppearanceMapError;
 
-/// How grey values of 0 … 255 are weighed.
+/// Scale of grey values before descriptors: linear or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

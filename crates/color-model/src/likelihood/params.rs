@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::{ColorDensity, ColorModelError, PixelSums};
 
-/// Whether pixels share the light that is not known.
+/// Correlation of the errors of pixels from the unknown light: one error for all, or one for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -23,7 +23,7 @@ pub enum LightErrorCorrelation {
     serde(default, deny_unknown_fields)
 )]
 pub struct PixelLikelihoodParams {
-    /// Whether pixels share the light that is not known.
+    /// Correlation of the errors of pixels from the unknown light: one error for all, or one for each.
     pub light_error_correlation: LightErrorCorrelation,
     /// Number of independent observations that an image is worth: log-likelihoods are multiplied by this over the number of pixels. Neighbouring
     /// pixels share shade, blur and label errors, so their errors are correlated.

@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use crate::AppearanceMapError;
 
-/// How much two views differ whose places are so far apart along the way.
+/// Difference of two views at a known distance along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDifferenceSample {
     /// Length of the way between them, m.
@@ -11,7 +11,7 @@ pub struct ViewDifferenceSample {
     pub distance: f64,
 }
 
-/// How views change with the way: the scale of all distances between views, found from the data.
+/// Scale of the distances between views, learned from the data: how much views differ at a distance along the path.
 ///
 /// A variogram, as in geostatistics: $`E^2(d) ≈ n + s\,d`$ near by, with the nugget $`n`$ of noise and the slope $`s`$, and a sill far away.
 /// It comes from views one step and a few steps apart along the way, and from comparisons with references of far places. Medians are

@@ -2,7 +2,7 @@ use super::RangeDependentSigma;
 use crate::random::{GaussMarkovProcess, RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, check};
 
-/// Errors that hang together in time, as of a target seen through the same haze for a while: a Gauss-Markov process per target.
+/// Time-correlated errors of a target's range and bearing: a Gauss-Markov process per target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrelatedErrorParams {
     /// Standard deviation of the range's part. Default 0.
