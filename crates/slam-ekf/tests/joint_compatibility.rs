@@ -223,11 +223,11 @@ fn looks_without_anything_usable_leave_the_map_as_it_is() {
 #[test]
 fn thresholds_without_meaning_are_refused() {
     for (probability, certainly_new, name) in [
-        (0.0, 40.0, "probability"),
-        (1.0, 40.0, "probability"),
-        (f64::NAN, 40.0, "probability"),
-        (0.99, 6.0, "certainly_new"), // below the 6.63 of one degree of freedom
-        (0.99, f64::NAN, "certainly_new"),
+        (0.0, 40.0, "gate_probability"),
+        (1.0, 40.0, "gate_probability"),
+        (f64::NAN, 40.0, "gate_probability"),
+        (0.99, 6.0, "new_landmark_nis"), // below the 6.63 of one degree of freedom
+        (0.99, f64::NAN, "new_landmark_nis"),
     ] {
         let params = JointCompatibilityParams {
             gate_probability: probability,

@@ -176,7 +176,7 @@ mod tests {
         for part in [
             "# Time from the exposure of the sensor to the stamp of what it saw, s.",
             "\"downweight\": Their weight decreases",
-            "# start = not set",
+            "# start_pose = not set",
         ] {
             assert!(text.contains(part), "{part} in\n{text}");
         }
