@@ -8,7 +8,7 @@ mod harness;
 
 use harness::measure;
 use wayfix_condensation::{
-    DiffusionKernel, DiscreteFilter, Fft6, Grid, Hist6, MeanVar, Move, Picture, Slip, ViewFeature, ViewGrid,
+    DiffusionKernel, DiscreteFilter, Fft6, Grid, Hist6, MeanVar, Move, RgbImage, Slip, ViewFeature, ViewGrid,
 };
 
 fn main() {
@@ -30,8 +30,8 @@ fn main() {
     // 30 × 20 views in steps of 16 pixels.
     let (width, height) = (256 + 29 * 16, 256 + 19 * 16);
     let pixel = |i: usize| ((i * 2_654_435_761) >> 8) as u8 / 4 + ((i % width) / 6) as u8;
-    let scene =
-        Picture::from_rgb(width, height, (0..3 * width * height).map(pixel).collect()).expect("pixels");
+    let bytes = (0..3 * width * height).map(pixel).collect();
+    let scene = RgbImage::from_raw(width as u32, height as u32, bytes).expect("3 bytes a pixel");
     let views = ViewGrid::new((width, height), (256, 256), 16).expect("views that fit");
     let features: [(&str, &dyn ViewFeature); 3] =
         [("MeanVar", &MeanVar), ("FFT6", &Fft6), ("Hist6", &Hist6::default())];

@@ -8,8 +8,8 @@
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
-//! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
-//! buffers of red, green and blue.
+//! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. Pictures are [`RgbImage`]s of the
+//! crate `image`; no files are opened.
 
 mod discrete;
 mod error;
@@ -24,8 +24,10 @@ pub use discrete::{
 };
 pub use error::CondensationError;
 pub use features::{
-    Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, Picture, View, ViewFeature, ViewGrid,
+    Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, View, ViewFeature, ViewGrid, grey, mapped,
+    shifted,
 };
+pub use image::{GrayImage, RgbImage};
 pub use learning::{
     Appearance, AppearanceParams, Disturbance, MoveLog, N_DISTURBANCES, NoiseParams, PValues, PictureViews,
     SceneViews, Tail, Traverse, TraverseParams, ViewSource,

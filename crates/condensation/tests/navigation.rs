@@ -11,8 +11,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
     ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Graph, GraphAction, Hist6,
-    Light, Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, Picture, RunReport, SceneViews,
-    StateSpace, ViewFeature, ViewGrid, World, histogram_match,
+    Light, Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, RgbImage, RunReport, SceneViews,
+    StateSpace, ViewFeature, ViewGrid, World, histogram_match, mapped, shifted,
 };
 
 struct Trial {
@@ -22,8 +22,14 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(feature: &dyn ViewFeature, learned: &Picture, real: &Picture, params: &AppearanceParams) -> Self {
-        let views = ViewGrid::new((learned.width(), learned.height()), (64, 64), 16).unwrap();
+    fn new(
+        feature: &dyn ViewFeature,
+        learned: &RgbImage,
+        real: &RgbImage,
+        params: &AppearanceParams,
+    ) -> Self {
+        let views =
+            ViewGrid::new((learned.width() as usize, learned.height() as usize), (64, 64), 16).unwrap();
         let source = SceneViews::new(learned, &views).unwrap();
         let appearance = Arc::new(Appearance::learn(&source, feature, params).unwrap());
         Self { seen: feature.extract_all(real, &views).unwrap(), appearance, views }
@@ -54,8 +60,8 @@ const OTHER_LIGHT: Light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
 #[test]
 fn every_feature_reaches_every_goal_in_another_light() {
     let learned = scene(240, 176, 3);
-    let real = OTHER_LIGHT.apply(&learned).unwrap().shifted(4, 3);
-    let matched = real.mapped(&histogram_match(&real, &learned));
+    let real = shifted(&OTHER_LIGHT.apply(&learned).unwrap(), 4, 3);
+    let matched = mapped(&real, &histogram_match(&real, &learned));
     let features: [&dyn ViewFeature; 3] = [&MeanVar, &Fft6, &Hist6::default()];
     for (number, feature) in features.into_iter().enumerate() {
         let modes = [(&matched, AppearanceParams::normalized()), (&real, AppearanceParams::online())];
@@ -92,7 +98,7 @@ fn light_is_found_together_with_the_place() {
 #[test]
 fn informed_choice_arrives_too() {
     let learned = scene(240, 176, 3);
-    let trial = Trial::new(&Fft6, &learned, &learned.shifted(-3, 4), &AppearanceParams::normalized());
+    let trial = Trial::new(&Fft6, &learned, &shifted(&learned, -3, 4), &AppearanceParams::normalized());
     for seed in 0..10 {
         let (report, off, _) = trial.run(seed, ActionChoice::Informed { hypotheses: 8 }, None);
         assert_eq!((report.arrival, off), (Arrival::Reached, 0), "run {seed}");
@@ -115,7 +121,7 @@ fn a_kidnapped_robot_notices_and_still_arrives() {
 /// Everything looks the same: the run ends after its steps, unsure, with finite beliefs.
 #[test]
 fn a_constant_scene_ends_unsure() {
-    let grey = Picture::from_rgb(240, 176, vec![90; 3 * 240 * 176]).unwrap();
+    let grey = RgbImage::from_pixel(240, 176, [90; 3].into());
     let trial = Trial::new(&MeanVar, &grey, &grey, &AppearanceParams::normalized());
     let (report, _, localizer) = trial.run(2, ActionChoice::Greedy, None);
     assert_eq!((report.arrival, report.steps), (Arrival::Unsure, NavigatorParams::default().max_steps));

@@ -6,7 +6,7 @@ mod common;
 use std::fs;
 
 use common::experiments;
-use wayfix_condensation::{Picture, StateSpace, ViewGrid};
+use wayfix_condensation::{RgbImage, StateSpace, ViewGrid};
 use wayfix_evaluation::report::{Metric, Report, Run};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 use wayfix_systems::views::{self, FeatureKind, Normalization, Setup, ViewsParams, ViewsRun};
@@ -22,7 +22,7 @@ fn unchanged() -> ViewsRun {
         [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0]
             .map(|phase| (60.0 * phase.sin() + 120.0) as u8)
     };
-    let picture = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
+    let picture = RgbImage::from_raw(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
     let setup =
         Setup { view: 64, step: 16, feature: FeatureKind::MeanVar, normalization: Normalization::None };
     views::run(&picture, &picture, &setup, &ViewsParams::default(), 10, 1, &|| ()).unwrap()

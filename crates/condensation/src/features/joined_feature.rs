@@ -1,4 +1,6 @@
-use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+use image::RgbImage;
+
+use crate::{CondensationError, FeatureTable, View, ViewFeature, ViewGrid};
 
 /// Several features side by side as one.
 ///
@@ -32,7 +34,7 @@ impl ViewFeature for JoinedFeature {
         }
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
         let mut joined = FeatureTable::zeros(views.grid(), self.n_components());
         let mut begin = 0;
         for part in &self.parts {

@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_condensation::Picture;
+use wayfix_condensation::RgbImage;
 use wayfix_sensor_log::{EncodedImage, ImageFormat};
 
 use super::super::ViewsError;
@@ -9,7 +9,7 @@ use super::super::ViewsError;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scene {
     /// The picture.
-    pub picture: Picture,
+    pub picture: RgbImage,
     /// Conversions that changed the image, a phrase each.
     pub remarks: Vec<&'static str>,
 }
@@ -32,7 +32,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
         (layout.has_alpha(), "has transparency: left out"),
     ];
     Ok(Scene {
-        picture: Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?,
+        picture: RgbImage::from_raw(decoded.width, decoded.height, decoded.pixels)
+            .expect("invariant: 3 bytes a pixel"),
         remarks: remarks.into_iter().filter_map(|(applies, remark)| applies.then_some(remark)).collect(),
     })
 }
