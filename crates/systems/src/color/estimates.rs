@@ -4,7 +4,7 @@ use wayfix_gaussian_core::CovarianceEllipse;
 use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
 use super::{ColorSystem, FrameResult};
-use crate::system::{self, EstimateLog, EstimateWriter};
+use crate::system::{self, EstimateLog, EstimateWriter, write_pose};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateLog = EstimateLog<ColorDrawing>;
@@ -35,8 +35,7 @@ impl system::Drawing for ColorDrawing {
         self.n_written += 1;
         let (stamp, pose, world) = (frame.stamp, frame.pose.mean(), topics::WORLD_FRAME);
         self.path.push(*pose);
-        writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
-        writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
+        write_pose(writer, stamp, pose)?;
         writer.scene_update("/estimate/robot", stamp, world, &robot(frame))?;
         if let Some(localizer) = system.localizer() {
             let points: Vec<[f64; 2]> = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();

@@ -3,6 +3,7 @@ use std::ops::RangeInclusive;
 use wayfix_slam_ekf::{ConfirmationParams, JointCompatibility, NearestNeighbour, SlamError};
 
 use super::PointSlamParams;
+use crate::slam::increment_numbers;
 
 /// What a parameter may be, for the machine and in words.
 type Range = (RangeInclusive<f64>, &'static str);
@@ -103,26 +104,16 @@ impl PointSlamParams {
             ("velocity.angular_sigma_per_meter", velocity.angular_sigma_per_meter, NOT_NEGATIVE),
             ("velocity.standing_factor", velocity.standing_factor, NOT_NEGATIVE),
             ("velocity.speed_loss_in_turns", velocity.speed_loss_in_turns, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_meter",
-                increment.translation_variance_per_meter,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_meter", increment.heading_variance_per_meter, NOT_NEGATIVE),
-            ("increment.heading_variance_per_radian", increment.heading_variance_per_radian, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_step",
-                increment.translation_variance_per_step,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
             ("filter.confirmation.min_detection_rate", filter.confirmation.min_detection_rate, SHARE),
             ("unlabelled_confirmation.min_detection_rate", unlabelled_confirmation.min_detection_rate, SHARE),
             ("filter.confirmation.n_detections", times_seen(&filter.confirmation), TIMES_SEEN),
             ("filter.confirmation.restart_nis", filter.confirmation.restart_nis, THRESHOLD),
             ("unlabelled_confirmation.n_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
             ("unlabelled_confirmation.restart_nis", unlabelled_confirmation.restart_nis, THRESHOLD),
-        ] {
+        ]
+        .into_iter()
+        .chain(increment_numbers(increment).map(|(name, value)| (name, value, NOT_NEGATIVE)))
+        {
             if !range.contains(&value) {
                 return Err(SlamError::Parameter { name, value, range: words });
             }

@@ -7,7 +7,7 @@ use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{FrontEnd, SlamSystem, StampedEstimate};
-use crate::system::{self, EstimateLog, EstimateWriter};
+use crate::system::{self, EstimateLog, EstimateWriter, write_pose};
 
 /// Path and map beside the records, for viewers.
 pub type SlamEstimateLog<F> = EstimateLog<SlamDrawing<F>>;
@@ -62,10 +62,9 @@ fn draw_stamped_estimate(
     stamped_estimate: &StampedEstimate,
     writer: &mut EstimateWriter,
 ) -> Result<(), LogError> {
-    let (stamp, pose, world) = (stamped_estimate.stamp, &stamped_estimate.pose, topics::WORLD_FRAME);
-    writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
-    writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
-    writer.scene_update("/estimate/robot", stamp, world, &robot(stamped_estimate))
+    let StampedEstimate { stamp, pose, .. } = stamped_estimate;
+    write_pose(writer, *stamp, pose)?;
+    writer.scene_update("/estimate/robot", *stamp, topics::WORLD_FRAME, &robot(stamped_estimate))
 }
 
 fn robot(stamped_estimate: &StampedEstimate) -> Vec<Drawing> {

@@ -14,6 +14,7 @@ mod plausible_increment;
 mod stopwatch;
 
 pub use drive::{DriveStep, drive};
+pub(crate) use estimate_log::write_pose;
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
 pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};

@@ -9,7 +9,11 @@ use wayfix_slam_ekf::{
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
 };
 
-use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
+use crate::{
+    settings::over_defaults,
+    slam::{AssociationRule, increment_numbers},
+    system::VELOCITY_HOLD,
+};
 
 /// Everything that can be set for EKF-SLAM with walls.
 ///
@@ -184,7 +188,6 @@ impl WallSlamParams {
         );
         let WallSensor { rho_sigma, alpha_sigma, largest_gap, sensor_range, half_field_of_view } =
             self.sensor;
-        let increment = &self.increment;
         for (name, value, (low, range)) in [
             ("sensor.rho_sigma", rho_sigma, POSITIVE),
             ("sensor.alpha_sigma", alpha_sigma, POSITIVE),
@@ -206,20 +209,10 @@ impl WallSlamParams {
             ),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_meter",
-                increment.translation_variance_per_meter,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_meter", increment.heading_variance_per_meter, NOT_NEGATIVE),
-            ("increment.heading_variance_per_radian", increment.heading_variance_per_radian, NOT_NEGATIVE),
-            (
-                "increment.translation_variance_per_step",
-                increment.translation_variance_per_step,
-                NOT_NEGATIVE,
-            ),
-            ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
-        ] {
+        ]
+        .into_iter()
+        .chain(increment_numbers(&self.increment).map(|(name, value)| (name, value, NOT_NEGATIVE)))
+        {
             if !(low..=1e6).contains(&value) {
                 return Err(SlamError::Parameter { name, value, range }.into());
             }
