@@ -3,6 +3,7 @@
 use rand::Rng;
 
 pub use wayfix_estimation_traits::laws::Violation;
+use wayfix_estimation_traits::laws::within;
 
 use crate::{Resampler, Weights};
 
@@ -62,13 +63,4 @@ pub fn resampler<S: Resampler, R: Rng + Clone>(
 
 fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), Violation> {
     within(law, if condition { 0.0 } else { 1.0 }, 0.0, case)
-}
-
-fn within(
-    law: &'static str,
-    error: f64,
-    tolerance: f64,
-    case: impl FnOnce() -> String,
-) -> Result<(), Violation> {
-    if error <= tolerance { Ok(()) } else { Err(Violation { law, case: case(), error, tolerance }) }
 }
