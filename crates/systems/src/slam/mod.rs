@@ -18,7 +18,6 @@ mod system;
 
 pub use association::AssociationRule;
 pub(crate) use association::ChosenRule;
-pub(crate) use estimates::ellipse;
 pub use estimates::{SlamDrawing, SlamEstimateLog};
 pub(crate) use estimator::nis;
 pub use estimator::{Estimator, StampedEstimate};

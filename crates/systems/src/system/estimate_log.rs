@@ -1,20 +1,9 @@
 use std::path::Path;
 
-use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, Stamp, topics};
+use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, topics};
 
 /// Writer of estimates, to files or viewers.
 pub type EstimateWriter = MessageWriter<Sinks>;
-
-/// Writes the estimated pose of the robot, as a pose and as the place of its frame.
-pub(crate) fn write_pose(
-    writer: &mut EstimateWriter,
-    stamp: Stamp,
-    pose: &Pose2<f64>,
-) -> Result<(), LogError> {
-    writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)?;
-    writer.frame_transform("/tf", stamp, topics::WORLD_FRAME, topics::BODY_FRAME, pose)
-}
 
 /// Topic of pose estimates in the log that come from another program.
 pub const OTHER_POSES: &str = "/other/pose";

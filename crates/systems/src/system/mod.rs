@@ -11,10 +11,10 @@ mod odometry_delay;
 mod odometry_lag;
 mod overlap;
 mod plausible_increment;
+mod robot_drawing;
 mod stopwatch;
 
 pub use drive::{DriveStep, drive};
-pub(crate) use estimate_log::write_pose;
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
 pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};
@@ -25,6 +25,7 @@ pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedKind, ODOMETRY, check_overlap};
 pub use plausible_increment::PlausibleIncrement;
+pub(crate) use robot_drawing::{ellipse, write_pose, write_robot};
 pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;

@@ -1,7 +1,7 @@
 use std::{fs, path::Path};
 
 use wayfix_condensation::RgbImage;
-use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_sensor_log::EncodedImage;
 
 use super::super::ViewsError;
 
@@ -20,9 +20,8 @@ pub struct Scene {
 /// Returns [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
 pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
     let bytes = fs::read(path).map_err(|source| ViewsError::Read { path: path.into(), source })?;
-    let format =
-        ImageFormat::of_bytes(&bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
-    let image = EncodedImage::new(format, bytes);
+    let image =
+        EncodedImage::from_bytes(bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
     let damaged = |source| ViewsError::Image { path: path.into(), source };
     let layout = image.layout().map_err(damaged)?;
     let decoded = image.decode_rgb().map_err(damaged)?;
