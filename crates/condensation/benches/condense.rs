@@ -9,7 +9,7 @@ mod harness;
 use harness::measure;
 use wayfix_condensation::{
     DiffusionKernel, DiscreteFilter, Fft6Descriptor, GlobalDescriptor, GridMove, Hist6Descriptor,
-    MeanVarDescriptor, Picture, PositionGrid, SlipProbabilities, ViewGrid,
+    MeanVarDescriptor, PositionGrid, RgbImage, SlipProbabilities, ViewGrid,
 };
 
 fn main() {
@@ -31,8 +31,8 @@ fn main() {
     // 30 × 20 views in steps of 16 pixels.
     let (width, height) = (256 + 29 * 16, 256 + 19 * 16);
     let pixel = |i: usize| ((i * 2_654_435_761) >> 8) as u8 / 4 + ((i % width) / 6) as u8;
-    let scene =
-        Picture::from_rgb(width, height, (0..3 * width * height).map(pixel).collect()).expect("pixels");
+    let bytes = (0..3 * width * height).map(pixel).collect();
+    let scene = RgbImage::from_raw(width as u32, height as u32, bytes).expect("3 bytes a pixel");
     let views = ViewGrid::new((width, height), (256, 256), 16).expect("views that fit");
     let features: [(&str, &dyn GlobalDescriptor); 3] =
         [("MeanVar", &MeanVarDescriptor), ("FFT6", &Fft6Descriptor), ("Hist6", &Hist6Descriptor::default())];

@@ -6,8 +6,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
     AppearanceLearningParams, AppearanceModel, DescriptorTable, GlobalDescriptor, GridMove, LightChange,
-    MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, Picture,
-    PositionGrid, SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams,
+    MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, PositionGrid,
+    RgbImage, SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, shifted,
 };
 
 /// The robot as it really is: at a place it does not know, before a scene darker than the one it learned.
@@ -29,13 +29,13 @@ impl NavigationEnvironment<GridMove> for Robot {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Learning: 13 × 9 views of a painted scene, and how they answer to shifts and to light.
-    let scene = painting(256, 192)?;
+    let scene = painting(256, 192).ok_or("no picture")?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
     let params = AppearanceLearningParams::online();
     let appearance = AppearanceModel::learn(&SceneViews::new(&scene, &views)?, &MeanVarDescriptor, &params)?;
 
     // The robot's world: less contrast, more offset, a bent tone curve, and all views a little beside the learned ones.
-    let real = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?.shifted(4, 3);
+    let real = shifted(&LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?, 4, 3);
     let grid = *views.grid();
     let start = grid.state(2, 6).ok_or("outside")?;
     let goal = grid.state(10, 1).ok_or("outside")?;
@@ -55,11 +55,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Coloured waves.
-fn painting(width: usize, height: usize) -> Result<Picture, wayfix_condensation::CondensationError> {
+fn painting(width: usize, height: usize) -> Option<RgbImage> {
     let wave = |phase: f64| (60.0 * phase.sin() + 120.0) as u8;
     let pixel = |i: usize| {
         let (x, y) = ((i % width) as f64, (i / width) as f64);
         [wave(x / 40.0 + (y / 50.0).sin()), wave(x * y / 6000.0), wave(y / 35.0 - (x / 80.0).cos())]
     };
-    Picture::from_rgb(width, height, (0..width * height).flat_map(pixel).collect())
+    RgbImage::from_raw(width as u32, height as u32, (0..width * height).flat_map(pixel).collect())
 }

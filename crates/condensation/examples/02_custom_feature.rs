@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use wayfix_condensation::{
     AppearanceLearningParams, AppearanceModel, GlobalDescriptor, GridMove, JoinedDescriptor,
-    MeanVarDescriptor, Picture, PositionGrid, SceneViews, SlipProbabilities, StateSpace, View, ViewGrid,
-    ViewLocalizer, ViewLocalizerParams,
+    MeanVarDescriptor, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateSpace, View, ViewGrid,
+    ViewLocalizer, ViewLocalizerParams, shifted,
 };
 
 /// Mean absolute difference of grey values between neighbours, to the right and down.
@@ -19,7 +19,8 @@ impl GlobalDescriptor for EdgeEnergy {
     }
 
     fn extract(&self, view: &View<'_>, features: &mut [f64]) {
-        let rows: Vec<&[u8]> = view.grey_rows().collect();
+        let grey = view.grey();
+        let rows: Vec<&[u8]> = grey.as_raw().chunks_exact(view.width()).collect();
         let right: u64 =
             rows.iter().flat_map(|row| row.windows(2)).map(|w| u64::from(w[0].abs_diff(w[1]))).sum();
         let pairs = rows.windows(2).flat_map(|two| two[0].iter().zip(two[1]));
@@ -30,7 +31,7 @@ impl GlobalDescriptor for EdgeEnergy {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let scene = bricks(256, 192)?;
+    let scene = bricks(256, 192).ok_or("no picture")?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
     let feature = JoinedDescriptor::new(vec![Box::new(MeanVarDescriptor), Box::new(EdgeEnergy)]);
     let source = SceneViews::new(&scene, &views)?;
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Arc::new(AppearanceModel::learn(&source, &feature, &AppearanceLearningParams::normalized())?);
 
     // Straight to the right along the middle row, telling the place on the way.
-    let seen = feature.extract_all(&scene.shifted(3, 3), &views)?;
+    let seen = feature.extract_all(&shifted(&scene, 3, 3), &views)?;
     let grid: PositionGrid = *views.grid();
     let right = GridMove { dx: 1, dy: 0 };
     let transition = SlipProbabilities::default().transition(&grid, right)?;
@@ -61,12 +62,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Bricks that get smaller to the right and brighter downwards.
-fn bricks(width: usize, height: usize) -> Result<Picture, wayfix_condensation::CondensationError> {
+fn bricks(width: usize, height: usize) -> Option<RgbImage> {
     let pixel = |i: usize| {
         let (x, y) = (i % width, i / width);
         let size = 40 - x / 8;
         let tone = (30 + y / 2 + 90 * ((x / size + y / 20) % 2)) as u8;
         [tone, tone / 2 + (x / 4) as u8, 120]
     };
-    Picture::from_rgb(width, height, (0..width * height).flat_map(pixel).collect())
+    RgbImage::from_raw(width as u32, height as u32, (0..width * height).flat_map(pixel).collect())
 }

@@ -12,8 +12,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
     GlobalDescriptor, GridMove, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
-    NavigationOutcome, Navigator, NavigatorParams, Picture, PositionGrid, SceneViews, StateSpace, ViewGrid,
-    ViewLocalizer, ViewLocalizerParams, light_match,
+    NavigationOutcome, Navigator, NavigatorParams, PositionGrid, RgbImage, SceneViews, StateSpace, ViewGrid,
+    ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
 };
 
 const RUNS: u64 = 100;
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("successes (unsure) mean steps, mean steps to certainty");
     for name in ["china.jpg", "coffee.png", "building.jpg"] {
         let learned = load(&folder.join(name))?;
-        let real = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?.shifted(dx, dy);
+        let real = shifted(&LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?, dx, dy);
         compare(name, &learned, &real, seed)?;
     }
     let (left, right) =
@@ -53,11 +53,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     compare("motorcycle", &left, &right, seed)
 }
 
-fn compare(name: &str, learned: &Picture, real: &Picture, seed: i32) -> Result<(), Box<dyn Error>> {
+fn compare(name: &str, learned: &RgbImage, real: &RgbImage, seed: i32) -> Result<(), Box<dyn Error>> {
     let light = light_match(real, learned).ok_or("a scene without contrast")?;
-    let matched = real.mapped(&[light.inverse_table()?; 3]);
+    let matched = mapped(real, &[light.inverse_table()?; 3]);
+    let size = (learned.width() as usize, learned.height() as usize);
     for (view, step) in [(128, 32), (256, 16)] {
-        let views = ViewGrid::new((learned.width(), learned.height()), (view, view), step)?;
+        let views = ViewGrid::new(size, (view, view), step)?;
         let modes = [
             ("whole scene", &matched, AppearanceLearningParams::normalized()),
             ("online", real, AppearanceLearningParams::online()),
@@ -111,7 +112,6 @@ fn runs(
     Ok(format!("{successes} ({unsure}) {:.1} {:.2} kidnappings {kidnappings}", mean(steps), mean(certain)))
 }
 
-fn load(path: &Path) -> Result<Picture, Box<dyn Error>> {
-    let rgb = image::open(path)?.to_rgb8();
-    Ok(Picture::from_rgb(rgb.width() as usize, rgb.height() as usize, rgb.into_raw())?)
+fn load(path: &Path) -> Result<RgbImage, Box<dyn Error>> {
+    Ok(image::open(path)?.to_rgb8())
 }

@@ -77,22 +77,6 @@ pub enum CondensationError {
         /// Width and height of a view.
         view: (usize, usize),
     },
-    /// A box has no pixel of the picture in it.
-    #[error("the box {bounding_box:?} lies outside a picture of {picture:?}")]
-    OutsidePicture {
-        /// Left, top, width and height.
-        bounding_box: [f64; 4],
-        /// Width and height of the picture.
-        picture: (usize, usize),
-    },
-    /// There is no such pixel.
-    #[error("pixel {pixel:?} is outside {size:?}")]
-    Outside {
-        /// Its column and row.
-        pixel: (usize, usize),
-        /// Width and height.
-        size: (usize, usize),
-    },
     /// A covariance cannot be used.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),

@@ -8,8 +8,8 @@
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceLearningParams::online`] |
 //! | navigation | [`ViewLocalizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
-//! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
-//! buffers of red, green and blue.
+//! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. Pictures are [`RgbImage`]s of the
+//! crate `image`; no files are opened.
 
 mod discrete;
 mod error;
@@ -26,8 +26,9 @@ pub use discrete::{
 pub use error::CondensationError;
 pub use features::{
     DescriptorTable, DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor, Hist6Descriptor,
-    JoinedDescriptor, MeanVarDescriptor, Picture, View, ViewGrid,
+    JoinedDescriptor, MeanVarDescriptor, View, ViewGrid, grey, mapped, shifted,
 };
+pub use image::{GrayImage, RgbImage};
 pub use learning::{
     AppearanceLearningParams, AppearanceModel, LikelihoodTail, MoveCounts, N_DISTURBANCES,
     NoiseCovarianceParams, PValueStatistics, PictureViews, RouteTraverse, RouteTraverseParams, SceneViews,

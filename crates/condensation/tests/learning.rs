@@ -7,8 +7,8 @@ mod common;
 use common::scene;
 use wayfix_condensation::{
     AppearanceLearningParams, AppearanceModel, CondensationError, DescriptorTable, GlobalDescriptor,
-    GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, Picture, PictureViews,
-    PositionGrid, SceneViews, StateSpace, TransitionModel, ViewDisturbance, ViewGrid,
+    GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, PictureViews, PositionGrid,
+    RgbImage, SceneViews, StateSpace, TransitionModel, View, ViewDisturbance, ViewGrid, shifted,
 };
 
 /// SciPy: `chi2.sf(4, 2)`; each component is one sigma of noise times sqrt(2) away.
@@ -32,7 +32,7 @@ fn the_same_place_is_told_from_others() {
     let source = SceneViews::new(&learned, &views).unwrap();
     let appearance =
         AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
-    let seen = MeanVarDescriptor.extract_all(&learned.shifted(2, -2), &views).unwrap();
+    let seen = MeanVarDescriptor.extract_all(&shifted(&learned, 2, -2), &views).unwrap();
     let same = appearance.p_values_of(&seen).unwrap();
     let others = appearance.p_values_between_states().unwrap();
     assert!(same.mean > 0.9 && others.mean < 0.1, "{same:?} {others:?}");
@@ -40,15 +40,15 @@ fn the_same_place_is_told_from_others() {
 
 #[test]
 fn pictures_of_single_places_can_be_learned() {
-    let pictures: Vec<Picture> = (0..4).map(|seed| scene(48, 32, seed)).collect();
+    let pictures: Vec<RgbImage> = (0..4).map(|seed| scene(48, 32, seed)).collect();
     let source = PictureViews::new(&pictures).unwrap();
     let appearance =
         AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
     let mut features = [0.0; 6];
-    MeanVarDescriptor.extract(&pictures[2].whole(), &mut features);
+    MeanVarDescriptor.extract(&View::whole(&pictures[2]).unwrap(), &mut features);
     assert_eq!(appearance.features(0).unwrap().get(2).unwrap(), features);
     assert!((appearance.p_value(2, &features).unwrap() - 1.0).abs() < 1e-12);
-    assert!(PictureViews::new(&[]).is_err());
+    assert!(PictureViews::new(&[]).is_err() && PictureViews::new(&[RgbImage::new(5, 0)]).is_err());
 }
 
 #[test]

@@ -12,8 +12,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
     GlobalDescriptor, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
-    NavigationOutcome, NavigationReport, Navigator, NavigatorParams, Picture, PlaceGraph, PlaceGraphMove,
-    SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match,
+    NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
+    SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped, shifted,
 };
 
 struct Trial {
@@ -25,11 +25,12 @@ struct Trial {
 impl Trial {
     fn new(
         feature: &dyn GlobalDescriptor,
-        learned: &Picture,
-        real: &Picture,
+        learned: &RgbImage,
+        real: &RgbImage,
         params: &AppearanceLearningParams,
     ) -> Self {
-        let views = ViewGrid::new((learned.width(), learned.height()), (64, 64), 16).unwrap();
+        let views =
+            ViewGrid::new((learned.width() as usize, learned.height() as usize), (64, 64), 16).unwrap();
         let source = SceneViews::new(learned, &views).unwrap();
         let appearance = Arc::new(AppearanceModel::learn(&source, feature, params).unwrap());
         Self { seen: feature.extract_all(real, &views).unwrap(), appearance, views }
@@ -62,8 +63,8 @@ const OTHER_LIGHT: LightChange = LightChange { gain: 0.7, offset: 20.0, gamma: 1
 #[test]
 fn every_feature_reaches_every_goal_in_another_light() {
     let learned = scene(240, 176, 3);
-    let real = OTHER_LIGHT.apply(&learned).unwrap().shifted(4, 3);
-    let matched = real.mapped(&histogram_match(&real, &learned));
+    let real = shifted(&OTHER_LIGHT.apply(&learned).unwrap(), 4, 3);
+    let matched = mapped(&real, &histogram_match(&real, &learned));
     let features: [&dyn GlobalDescriptor; 3] =
         [&MeanVarDescriptor, &Fft6Descriptor, &Hist6Descriptor::default()];
     for (number, feature) in features.into_iter().enumerate() {
@@ -109,7 +110,7 @@ fn informed_choice_arrives_too() {
     let trial = Trial::new(
         &Fft6Descriptor,
         &learned,
-        &learned.shifted(-3, 4),
+        &shifted(&learned, -3, 4),
         &AppearanceLearningParams::normalized(),
     );
     for seed in 0..10 {
@@ -134,7 +135,7 @@ fn a_kidnapped_robot_notices_and_still_arrives() {
 /// Everything looks the same: the run ends after its steps, unsure, with finite beliefs.
 #[test]
 fn a_constant_scene_ends_unsure() {
-    let grey = Picture::from_rgb(240, 176, vec![90; 3 * 240 * 176]).unwrap();
+    let grey = RgbImage::from_pixel(240, 176, [90; 3].into());
     let trial = Trial::new(&MeanVarDescriptor, &grey, &grey, &AppearanceLearningParams::normalized());
     let (report, _, localizer) = trial.run(2, ActionSelection::Greedy, None);
     assert_eq!(

@@ -96,6 +96,8 @@ impl<T: RealField + Copy> LieGroup for Angle<T> {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use std::f64::consts::PI;
 
@@ -112,7 +114,7 @@ mod tests {
         assert_eq!(wrap_angle(-PI), PI);
         for odd in [3.0, -3.0, 5.0, -7.0] {
             // The product is not exactly an odd multiple of π, so either end is right.
-            assert!((wrap_angle(odd * PI).abs() - PI).abs() < 1e-14);
+            assert_abs_diff_eq!(wrap_angle(odd * PI).abs(), PI, epsilon = 1e-14);
         }
         for huge in [1e6, -1e16, 1e300, f64::MAX, f64::MIN] {
             let wrapped = wrap_angle(huge);

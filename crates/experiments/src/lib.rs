@@ -8,6 +8,7 @@ pub mod cml;
 pub mod color;
 pub mod consistency;
 pub mod corridor;
+mod error_quantiles;
 pub mod films;
 pub mod fixtures;
 pub mod monobot;

@@ -6,7 +6,7 @@ mod common;
 use std::fs;
 
 use common::experiments;
-use wayfix_condensation::{Picture, StateSpace, ViewGrid};
+use wayfix_condensation::{RgbImage, StateSpace, ViewGrid};
 use wayfix_evaluation::report::{Metric, Report, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 use wayfix_systems::views::{
@@ -24,7 +24,7 @@ fn unchanged() -> ViewsRun {
         [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0]
             .map(|phase| (60.0 * phase.sin() + 120.0) as u8)
     };
-    let picture = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
+    let picture = RgbImage::from_raw(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
     let setup = ViewSystemConfig {
         view: 64,
         step: 16,

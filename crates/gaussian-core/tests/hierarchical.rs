@@ -1,6 +1,7 @@
 //! Laws of learning from groups: the objective never falls, known priors are recovered, closed formulas hold, bad input is refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail like tests")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -126,14 +127,14 @@ fn exact_complete_observations_give_the_sample_moments() {
     let scatter = samples.iter().map(|x| (x - &mean) * (x - &mean).transpose()).sum::<DMatrix<f64>>();
     let fit = fit_hierarchical(&groups, &HierarchicalParams::default()).unwrap();
     // Means of size 10, conditioning below 100: some dozen roundings.
-    assert!((fit.gaussian.mean() - &mean).amax() < 1e-13);
-    assert!((fit.gaussian.covariance() - &scatter / 20.0).amax() < 1e-12);
+    assert_abs_diff_eq!(fit.gaussian.mean(), &mean, epsilon = 1e-13);
+    assert_abs_diff_eq!(*fit.gaussian.covariance(), &scatter / 20.0, epsilon = 1e-12);
     // With a hyperprior: its scale and degrees of freedom join in. [Gelman et al. 2003, section 3.6]
     let prior = hyperprior(2.0).unwrap();
     let params = HierarchicalParams { covariance_prior: Some(prior.clone()), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
     let expected = (scatter + prior.scale()) / (20.0 + PSEUDO_GROUPS);
-    assert!((fit.gaussian.covariance() - expected).amax() < 1e-12);
+    assert_abs_diff_eq!(*fit.gaussian.covariance(), expected, epsilon = 1e-12);
 }
 
 #[test]
@@ -186,7 +187,7 @@ fn both_hyperpriors_speak_where_no_group_does() {
     assert_eq!(fit.gaussian.mean(), &DVector::from_element(D, 3.0));
     // Ψ / (ν + d + 2): N(m, Σ/κ) adds one |Σ|^(-1/2).
     let (groups, mode) = (PSEUDO_GROUPS, 4.0);
-    assert!((fit.gaussian.covariance()[(2, 2)] - mode * groups / (groups + 1.0)).abs() < 1e-14);
+    assert_abs_diff_eq!(fit.gaussian.covariance()[(2, 2)], mode * groups / (groups + 1.0), epsilon = 1e-14);
 }
 
 #[test]

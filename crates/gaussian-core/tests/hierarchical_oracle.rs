@@ -2,6 +2,7 @@
 //! `oracle/hierarchical.py` beside this file, which writes every group as one joint Gaussian of all its observations.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, dvector};
 use wayfix_gaussian_core::{
     GroupStatistics, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
@@ -46,8 +47,8 @@ fn assert_agrees(params: HierarchicalParams, objective: f64, mean: [f64; 3], cov
     let fit = fit_hierarchical(&groups(), &params).unwrap();
     let reached = fit.objective[fit.iterations()];
     // The objective is flat at the optimum: second order in the error of the arguments, so only rounding remains.
-    assert!((reached - objective).abs() < 1e-10, "{reached} against {objective}");
-    assert!((fit.gaussian.mean() - dvector![mean[0], mean[1], mean[2]]).amax() < AGREEMENT);
+    assert_abs_diff_eq!(reached, objective, epsilon = 1e-10);
+    assert_abs_diff_eq!(*fit.gaussian.mean(), dvector![mean[0], mean[1], mean[2]], epsilon = AGREEMENT);
     let difference = fit.gaussian.covariance() - DMatrix::from_row_slice(3, 3, &covariance);
     assert!(difference.amax() < AGREEMENT, "{difference}");
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{Matrix1, Matrix3, RowVector3, Vector3};
 use rand::{SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
@@ -78,7 +79,7 @@ fn merging_poses_gives_the_moments_of_their_samples() {
         let mean = all.iter().map(|d| d[i]).sum::<f64>() / n;
         // Five standard errors; planar poses add no bend, since their translation is linear in the chart.
         assert!(mean.abs() < 5.0 * (variance / n).sqrt());
-        assert!((scatter[(i, i)] - variance).abs() < 5.0 * variance * (2.0 / n).sqrt());
+        assert_abs_diff_eq!(scatter[(i, i)], variance, epsilon = 5.0 * variance * (2.0 / n).sqrt());
     }
 }
 

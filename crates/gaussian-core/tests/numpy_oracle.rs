@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Angle;
 use wayfix_gaussian_core::{
@@ -27,11 +28,11 @@ const ROUNDING: f64 = 1e-13;
 fn densities_and_divergences() {
     let (p, q) = gaussians();
     let point = Vector3::new(2.0, 0.0, 1.0);
-    assert!((p.log_density(&point).unwrap() + 4.995422361612508).abs() < ROUNDING);
-    assert!((p.kl_divergence(&q).unwrap() - 6.360795142075197).abs() < 10.0 * ROUNDING);
-    assert!((p.bhattacharyya_distance(&q).unwrap() - 0.9653961369890981).abs() < ROUNDING);
+    assert_abs_diff_eq!(p.log_density(&point).unwrap(), -4.995422361612508, epsilon = ROUNDING);
+    assert_abs_diff_eq!(p.kl_divergence(&q).unwrap(), 6.360795142075197, epsilon = 10.0 * ROUNDING);
+    assert_abs_diff_eq!(p.bhattacharyya_distance(&q).unwrap(), 0.9653961369890981, epsilon = ROUNDING);
     let mixture = GaussianMixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap();
-    assert!((mixture.log_density(&point).unwrap() + 5.392743716770693).abs() < ROUNDING);
+    assert_abs_diff_eq!(mixture.log_density(&point).unwrap(), -5.392743716770693, epsilon = ROUNDING);
 }
 
 #[test]
@@ -70,6 +71,6 @@ fn intersection_weights_are_those_of_a_scalar_minimizer() {
 fn circular_means() {
     let angles = [3.0_f64, -3.1, 2.5, -2.9].map(Angle::new);
     let moments = CircularMoments::from_weighted(&angles, &[0.1, 0.4, 0.2, 0.3]).unwrap();
-    assert!((moments.mean_direction().unwrap().radians() - 3.093848681874398).abs() < 1e-15);
-    assert!((moments.resultant_length() - 0.9512534613615437).abs() < 1e-15);
+    assert_abs_diff_eq!(moments.mean_direction().unwrap().radians(), 3.093848681874398, epsilon = 1e-15);
+    assert_abs_diff_eq!(moments.resultant_length(), 0.9512534613615437, epsilon = 1e-15);
 }

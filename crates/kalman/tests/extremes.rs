@@ -1,6 +1,7 @@
 //! Scales near both ends of the numbers, and noises that are symmetric to half the digits only: where a proof by bounds could prove too much.
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its models has failed")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Matrix3, Matrix4, Vector2, Vector3, Vector4};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +26,7 @@ fn an_innovation_of_any_scale_has_its_gain() {
         assert!((root * root.transpose() - covariance).amax() < 10.0 * f64::EPSILON * covariance.amax());
         // ln N(0; 0, S) = -ln 2π - ½ ln(1.75 s²).
         let expected = -std::f64::consts::TAU.ln() - 0.5 * 1.75_f64.ln() - f64::from(exponent) * 10_f64.ln();
-        assert!((innovation.log_likelihood() - expected).abs() < 1e-13 * expected.abs().max(1.0));
+        assert_abs_diff_eq!(innovation.log_likelihood(), expected, epsilon = 1e-13 * expected.abs().max(1.0));
     }
 }
 
@@ -34,7 +35,7 @@ fn variances_whose_product_overflows_keep_their_gains() {
     let covariance = Matrix2::from_diagonal(&Vector2::new(1e160, 1e170));
     let innovation =
         Innovation::<Vector2<f64>, Vector2<f64>>::new(Vector2::zeros(), covariance, covariance).unwrap();
-    assert!((innovation.gain() - Matrix2::identity()).amax() < 4.0 * f64::EPSILON);
+    assert_abs_diff_eq!(innovation.gain(), Matrix2::identity(), epsilon = 4.0 * f64::EPSILON);
 }
 
 /// A sensor whose noise nobody mirrored.

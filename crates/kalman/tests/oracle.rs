@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use common::{TrackSensor, constant_velocity, track_prior};
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{Manifold, SensorModel};
@@ -55,7 +56,7 @@ fn the_kalman_filter_gives_filterpys_figures() {
     }
     assert!((filter.estimate().mean() - Vector4::from(MEAN)).norm() < ROUNDING * 10.0);
     assert!((filter.estimate().covariance() - Matrix4::from_row_slice(&COVARIANCE)).norm() < ROUNDING);
-    assert!((log_likelihood - LOG_LIKELIHOOD).abs() < ROUNDING);
+    assert_abs_diff_eq!(log_likelihood, LOG_LIKELIHOOD, epsilon = ROUNDING);
 }
 
 #[test]
@@ -90,7 +91,7 @@ fn the_imm_gives_filterpys_figures() {
     let estimate = filter.estimate().unwrap();
     assert!((estimate.mean() - Vector4::from(MEAN)).norm() < ROUNDING * 10.0);
     assert!((estimate.covariance() - Matrix4::from_row_slice(&COVARIANCE)).norm() < ROUNDING * 10.0);
-    assert!((filter.model_probabilities()[0] - PROBABILITIES[0]).abs() < ROUNDING);
+    assert_abs_diff_eq!(filter.model_probabilities()[0], PROBABILITIES[0], epsilon = ROUNDING);
 }
 
 /// Range and bearing to a landmark at (5, 3); bearings as plain numbers, as filterpy takes them.

@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use common::{TrackSensor, constant_velocity, position_sensor, track_prior};
 use nalgebra::{DefaultAllocator, Matrix1, Matrix3, U4, Vector1, Vector2, Vector3, Vector4};
 use rand::SeedableRng;
@@ -206,7 +207,7 @@ fn gpb2_is_exact_over_two_steps() {
     }
     // All hypotheses start from one Gaussian, so what is merged after the first step is equal and nothing is lost by merging.
     for (model, weight) in weights.iter().enumerate() {
-        assert!((filter.model_probabilities()[model] - weight / total).abs() < 1e-12);
+        assert_abs_diff_eq!(filter.model_probabilities()[model], weight / total, epsilon = 1e-12);
     }
     assert!((filter.estimate().unwrap().mean() - mean / total).norm() < 1e-12 * 10.0);
 }
@@ -313,8 +314,8 @@ fn active_light_is_selected_and_the_other_is_unchanged() {
             }
         }
         // 25 over some 48 measurements of each light, plus drift: sigma below 2.5; four of them.
-        assert!((light.estimate().mean()[0] - 52.0).abs() < 10.0);
-        assert!((light.bank().last_active_estimate(0).unwrap().mean()[0] - 148.0).abs() < 10.0);
+        assert_abs_diff_eq!(light.estimate().mean()[0], 52.0, epsilon = 10.0);
+        assert_abs_diff_eq!(light.bank().last_active_estimate(0).unwrap().mean()[0], 148.0, epsilon = 10.0);
         assert_eq!(light.most_probable_history().len(), 40);
         assert!(light.log_evidence()[1] > light.log_evidence()[0]);
     }
@@ -354,7 +355,7 @@ fn all_histories_kept_are_the_exact_posterior() {
     }
     let total = last[0] + last[1];
     for (found, weight) in light.model_probabilities().iter().zip(last) {
-        assert!((found - weight / total).abs() < 1e-12);
+        assert_abs_diff_eq!(*found, weight / total, epsilon = 1e-12);
     }
     assert_eq!(light.most_probable_history(), best.1);
 }

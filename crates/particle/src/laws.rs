@@ -3,6 +3,7 @@
 use rand::Rng;
 
 pub use wayfix_estimation_traits::laws::LawViolation;
+use wayfix_estimation_traits::laws::within;
 
 use crate::{NormalizedWeights, Resampler};
 
@@ -62,13 +63,4 @@ pub fn resampler<S: Resampler, R: Rng + Clone>(
 
 fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), LawViolation> {
     within(law, if condition { 0.0 } else { 1.0 }, 0.0, case)
-}
-
-fn within(
-    law: &'static str,
-    error: f64,
-    tolerance: f64,
-    case: impl FnOnce() -> String,
-) -> Result<(), LawViolation> {
-    if error <= tolerance { Ok(()) } else { Err(LawViolation { law, case: case(), error, tolerance }) }
 }

@@ -1,6 +1,7 @@
 //! Bad input gets a typed error, and nothing changes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its particles has failed")]
 
+use approx::assert_abs_diff_eq;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Angle;
@@ -112,7 +113,7 @@ fn impossible_particles_are_legal_until_all_are() {
     assert_eq!(set.effective_sample_size(), 0.0);
     assert_eq!(set, dead, "nothing resets the weights on its own");
     set.reset_weights();
-    assert!((set.effective_sample_size() - 200.0).abs() < 1e-9);
+    assert_abs_diff_eq!(set.effective_sample_size(), 200.0, epsilon = 1e-9);
 }
 
 #[test]

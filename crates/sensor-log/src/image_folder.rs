@@ -6,9 +6,7 @@ use std::iter::Enumerate;
 use std::path::{Path, PathBuf};
 use std::vec;
 
-use crate::{
-    EncodedImage, ImageFormat, LogError, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp,
-};
+use crate::{EncodedImage, LogError, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp};
 
 /// No frame is larger; a file that is something else must not fill the memory.
 const MAX_FILE_BYTES: u64 = 128 << 20;
@@ -119,8 +117,7 @@ fn read(path: &Path) -> Result<EncodedImage, String> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(format!("more than {MAX_FILE_BYTES} bytes"));
     }
-    let format = ImageFormat::of_bytes(&bytes).ok_or("neither JPEG nor PNG")?;
-    let image = EncodedImage::new(format, bytes);
+    let image = EncodedImage::from_bytes(bytes).ok_or("neither JPEG nor PNG")?;
     image.size().map_err(|error| error.to_string())?;
     Ok(image)
 }

@@ -1,7 +1,9 @@
 //! The law suite of [`LandmarkModel`]: run it on a landmark model of your own.
 
+use std::marker::PhantomData;
+
 use nalgebra::{DefaultAllocator, linalg::Cholesky};
-use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, laws};
+use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, UpdateAlloc, laws};
 
 pub use wayfix_estimation_traits::laws::LawViolation;
 
@@ -43,9 +45,19 @@ where
                 let place = format!("({law}, robot {robot:?}, landmark {landmark:?})");
                 move |violation: LawViolation| LawViolation { case: place, ..violation }
             };
-            let robot_sees = SeenByRobot { model, landmark };
+            let robot_sees = Sensor {
+                expected: |robot: &M::Robot| model.expected(robot, landmark),
+                jacobian: |robot: &M::Robot| model.robot_jacobian(robot, landmark),
+                noise: |robot: &M::Robot| model.noise(&model.expected(robot, landmark)),
+                spaces: PhantomData,
+            };
             laws::sensor(&robot_sees, std::slice::from_ref(robot)).map_err(at("law 1, by the robot"))?;
-            let landmark_is_seen = SeenAtLandmark { model, robot };
+            let landmark_is_seen = Sensor {
+                expected: |landmark: &M::Landmark| model.expected(robot, landmark),
+                jacobian: |landmark: &M::Landmark| model.landmark_jacobian(robot, landmark),
+                noise: |landmark: &M::Landmark| model.noise(&model.expected(robot, landmark)),
+                spaces: PhantomData,
+            };
             laws::sensor(&landmark_is_seen, std::slice::from_ref(landmark))
                 .map_err(at("law 1, by the landmark"))?;
             symmetry(model, robot, landmark).map_err(at("symmetry"))?;
@@ -95,7 +107,14 @@ where
     let size = 1.0 + new.robot_jacobian.amax();
     within("expected(initialize(z)) = z (law 2)", missed, 1e-12 * size)?; // some thousand roundings
 
-    laws::sensor(&Placed { model, seen }, std::slice::from_ref(robot))?;
+    // The new landmark as a function of the robot, with the landmark's covariance for its noise.
+    let placed = Sensor {
+        expected: |robot: &M::Robot| model.initialize(robot, seen).landmark,
+        jacobian: |robot: &M::Robot| model.initialize(robot, seen).robot_jacobian,
+        noise: |robot: &M::Robot| model.initialize(robot, seen).covariance,
+        spaces: PhantomData::<(M::Robot, M::Landmark)>,
+    };
+    laws::sensor(&placed, std::slice::from_ref(robot))?;
 
     let jacobian = model.landmark_jacobian(robot, &new.landmark);
     let seen_again = &jacobian * &new.covariance * jacobian.transpose();
@@ -108,86 +127,36 @@ where
 }
 
 fn within(law: &'static str, error: f64, tolerance: f64) -> Result<(), LawViolation> {
-    if error <= tolerance { Ok(()) } else { Err(LawViolation { law, case: String::new(), error, tolerance }) }
+    laws::within(law, error, tolerance, String::new)
 }
 
-/// The model as a sensor of the robot, for one landmark.
-struct SeenByRobot<'a, M: LandmarkModel>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    model: &'a M,
-    landmark: &'a M::Landmark,
+/// A sensor whose three functions are closures.
+struct Sensor<X, Z, E, J, N> {
+    expected: E,
+    jacobian: J,
+    noise: N,
+    spaces: PhantomData<(X, Z)>,
 }
 
-impl<M: LandmarkModel> SensorModel for SeenByRobot<'_, M>
+impl<X, Z, E, J, N> SensorModel for Sensor<X, Z, E, J, N>
 where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+    X: Manifold<Scalar = f64>,
+    Z: Manifold<Scalar = f64>,
+    E: Fn(&X) -> Z,
+    J: Fn(&X) -> Jacobian<Z, X>,
+    N: Fn(&X) -> TangentMatrix<Z>,
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {
-    type State = M::Robot;
-    type Measurement = M::Measurement;
+    type State = X;
+    type Measurement = Z;
 
-    fn expected(&self, robot: &M::Robot) -> M::Measurement {
-        self.model.expected(robot, self.landmark)
+    fn expected(&self, state: &X) -> Z {
+        (self.expected)(state)
     }
-    fn jacobian(&self, robot: &M::Robot) -> Jacobian<M::Measurement, M::Robot> {
-        self.model.robot_jacobian(robot, self.landmark)
+    fn jacobian(&self, state: &X) -> Jacobian<Z, X> {
+        (self.jacobian)(state)
     }
-    fn noise(&self, robot: &M::Robot) -> TangentMatrix<M::Measurement> {
-        self.model.noise(&self.expected(robot))
-    }
-}
-
-/// The model as a sensor of the landmark, for one robot.
-struct SeenAtLandmark<'a, M: LandmarkModel>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    model: &'a M,
-    robot: &'a M::Robot,
-}
-
-impl<M: LandmarkModel> SensorModel for SeenAtLandmark<'_, M>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    type State = M::Landmark;
-    type Measurement = M::Measurement;
-
-    fn expected(&self, landmark: &M::Landmark) -> M::Measurement {
-        self.model.expected(self.robot, landmark)
-    }
-    fn jacobian(&self, landmark: &M::Landmark) -> Jacobian<M::Measurement, M::Landmark> {
-        self.model.landmark_jacobian(self.robot, landmark)
-    }
-    fn noise(&self, landmark: &M::Landmark) -> TangentMatrix<M::Measurement> {
-        self.model.noise(&self.expected(landmark))
-    }
-}
-
-/// The start of a landmark as a function of the robot, with the landmark's covariance for its noise.
-struct Placed<'a, M: LandmarkModel>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    model: &'a M,
-    seen: &'a M::Measurement,
-}
-
-impl<M: LandmarkModel> SensorModel for Placed<'_, M>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    type State = M::Robot;
-    type Measurement = M::Landmark;
-
-    fn expected(&self, robot: &M::Robot) -> M::Landmark {
-        self.model.initialize(robot, self.seen).landmark
-    }
-    fn jacobian(&self, robot: &M::Robot) -> Jacobian<M::Landmark, M::Robot> {
-        self.model.initialize(robot, self.seen).robot_jacobian
-    }
-    fn noise(&self, robot: &M::Robot) -> TangentMatrix<M::Landmark> {
-        self.model.initialize(robot, self.seen).covariance
+    fn noise(&self, state: &X) -> TangentMatrix<Z> {
+        (self.noise)(state)
     }
 }

@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -127,7 +128,7 @@ fn false_first_detection_is_replaced_and_unseen_one_removed() {
     slam.update(&[], &mut KnownIds).unwrap();
     assert_eq!((slam.n_landmarks(), slam.n_tentative()), (1, 0));
     let confirmed = slam.landmark(LandmarkId(1)).unwrap();
-    assert!((slam.robot().inverse_transform(&confirmed.mean).norm() - 2.0).abs() < 0.05);
+    assert_abs_diff_eq!(slam.robot().inverse_transform(&confirmed.mean).norm(), 2.0, epsilon = 0.05);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{Matrix1, Matrix2, Matrix2x3, Vector1, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -122,7 +123,7 @@ fn the_monobot_has_the_information_of_the_paper() {
     }
     let j = recorder.information();
     for (place, sign) in [((0, 0), 1.0), ((0, 1), -1.0), ((1, 0), -1.0), ((1, 1), 1.0)] {
-        assert!((j[place] - sign * expected).abs() < 1e-9 * expected);
+        assert_abs_diff_eq!(j[place], sign * expected, epsilon = 1e-9 * expected);
     }
     assert_eq!(recorder.rank(), 1);
 }

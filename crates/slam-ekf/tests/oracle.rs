@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -154,14 +155,15 @@ fn compare(order: UpdateOrder) {
     // 200 steps of some 40 measured numbers, conditions of 1e5 and less: rounding stays well below a nanometre.
     let tolerance = 1e-9;
     let robot = slam.robot();
-    assert!((robot.x() - textbook.x[0]).abs() < tolerance && (robot.y() - textbook.x[1]).abs() < tolerance);
+    assert_abs_diff_eq!(robot.x(), textbook.x[0], epsilon = tolerance);
+    assert_abs_diff_eq!(robot.y(), textbook.x[1], epsilon = tolerance);
     assert!(wrap_angle(robot.heading() - textbook.x[2]).abs() < tolerance);
     // The filter keeps the robot's error in the body frame; the landmarks come in the order of their first sightings in both.
     let n = textbook.x.len();
     let mut to_world = DMatrix::identity(n, n);
     to_world.view_mut((0, 0), (2, 2)).copy_from(&robot.rotation_matrix());
     let world = &to_world * slam.covariance() * to_world.transpose();
-    assert!((world - &textbook.p).amax() < tolerance);
+    assert_abs_diff_eq!(world, &textbook.p, epsilon = tolerance);
     for (id, offset) in &textbook.offsets {
         let landmark = slam.landmark(LandmarkId(*id)).unwrap();
         assert!((landmark.mean - textbook.x.fixed_rows::<2>(*offset)).amax() < tolerance, "landmark {id}");
@@ -198,11 +200,11 @@ fn joint_update_is_independent_of_observation_order() {
     let (forward, backward) = (run(false), run(true));
     let tolerance = 1e-10; // rounding of another order of sums
     assert!((forward.robot().translation - backward.robot().translation).norm() < tolerance);
-    assert!((forward.robot_covariance() - backward.robot_covariance()).amax() < tolerance);
+    assert_abs_diff_eq!(forward.robot_covariance(), backward.robot_covariance(), epsilon = tolerance);
     assert_eq!(forward.n_landmarks(), backward.n_landmarks());
     for (one, other) in forward.landmarks().zip(backward.landmarks()) {
         assert_eq!(one.id, other.id);
-        assert!((one.mean - other.mean).amax() < tolerance);
-        assert!((one.covariance - other.covariance).amax() < tolerance);
+        assert_abs_diff_eq!(one.mean, other.mean, epsilon = tolerance);
+        assert_abs_diff_eq!(one.covariance, other.covariance, epsilon = tolerance);
     }
 }

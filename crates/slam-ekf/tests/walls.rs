@@ -4,6 +4,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix2, Vector2};
@@ -105,7 +106,7 @@ fn every_wall_is_one_landmark_where_it_is_and_as_long_as_it_is() {
         let found = found.unwrap();
         let [from, to] = found.stretch;
         assert!(distance(&found) < 0.05, "{found:?} for {ends:?}");
-        assert!(((to - from) - (ends[1] - ends[0]).norm()).abs() < 0.3);
+        assert_abs_diff_eq!(to - from, (ends[1] - ends[0]).norm(), epsilon = 0.3);
     }
 }
 

@@ -5,7 +5,8 @@ const LUMA: [u32; 3] = [19595, 38470, 7471];
 
 /// The pixels of a picture, row by row from the top left.
 pub(crate) fn rgb_pixels(picture: &RgbImage) -> &[[u8; 3]] {
-    picture.as_raw().as_chunks().0
+    let n_pixels = picture.width() as usize * picture.height() as usize;
+    &picture.as_raw().as_chunks().0[..n_pixels] // the buffer of an image may be longer
 }
 
 /// The grey value of every pixel: $`0.299 R + 0.587 G + 0.114 B`$, rounded.

@@ -1,7 +1,10 @@
 use std::f64::consts::TAU;
 
+use image::RgbImage;
+
 use crate::features::columns::ColumnSums;
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
+use crate::features::picture::grey;
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
 
 /// The moduli of the first six Fourier components of the grey values, $`[|F_{0,0}|, …, |F_{0,5}|]`$. [Kasprzak & Szynkiewicz, Eq. 7]
 ///
@@ -12,10 +15,10 @@ use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View,
 /// The inner sums are those of the columns, which neighbouring views share.
 ///
 /// ```
-/// use wayfix_condensation::{Fft6Descriptor, Picture, GlobalDescriptor};
-/// let stripes = Picture::from_rgb(2, 1, vec![90, 90, 90, 10, 10, 10])?;
+/// use wayfix_condensation::{Fft6Descriptor, RgbImage, View, GlobalDescriptor};
+/// let stripes = RgbImage::from_raw(2, 1, vec![90, 90, 90, 10, 10, 10]).expect("3 bytes a pixel");
 /// let mut features = [0.0; 6];
-/// Fft6Descriptor.extract(&stripes.whole(), &mut features);
+/// Fft6Descriptor.extract(&View::whole(&stripes)?, &mut features);
 /// assert!((features[0] - 50.0).abs() < 1e-12 && (features[1] - 40.0).abs() < 1e-12);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
@@ -31,7 +34,7 @@ impl GlobalDescriptor for Fft6Descriptor {
 
     fn extract(&self, view: &View<'_>, features: &mut [f64]) {
         let mut columns = vec![[0_u64]; view.width()];
-        for row in view.grey_rows() {
+        for row in view.grey().as_raw().chunks_exact(view.width()) {
             for (column, &grey) in columns.iter_mut().zip(row) {
                 column[0] += u64::from(grey);
             }
@@ -39,12 +42,13 @@ impl GlobalDescriptor for Fft6Descriptor {
         moduli(&columns, &waves(view.width()), view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
         let mut table = DescriptorTable::zeros(views.grid(), N);
         let (view_width, view_height) = views.view_size();
         let waves = waves(view_width);
-        let pixel = |x, y| [u64::from(scene.grey()[y * scene.width() + x])];
+        let (grey, (width, _)) = (grey(scene).into_raw(), views.scene_size());
+        let pixel = |x, y| [u64::from(grey[y * width + x])];
         ColumnSums::for_each_band(views, pixel, |row, columns| {
             for (column, &left) in views.lefts().iter().enumerate() {
                 let state = row * views.lefts().len() + column;

@@ -1,4 +1,6 @@
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
+use image::RgbImage;
+
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
 
 /// Several features side by side as one.
 ///
@@ -32,7 +34,7 @@ impl GlobalDescriptor for JoinedDescriptor {
         }
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         let mut joined = DescriptorTable::zeros(views.grid(), self.n_components());
         let mut begin = 0;
         for part in &self.parts {

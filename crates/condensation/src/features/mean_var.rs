@@ -1,13 +1,16 @@
+use image::RgbImage;
+
 use crate::features::columns::ColumnSums;
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
+use crate::features::picture::rgb_pixels;
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
 
 /// Mean and standard deviation of red, green and blue: $`[m_1, m_2, m_3, σ_1, σ_2, σ_3]`$. [Kasprzak & Szynkiewicz, Sec. 3.2]
 ///
 /// ```
-/// use wayfix_condensation::{MeanVarDescriptor, Picture, GlobalDescriptor};
-/// let picture = Picture::from_rgb(2, 1, vec![10, 7, 0, 30, 7, 0])?;
+/// use wayfix_condensation::{MeanVarDescriptor, RgbImage, View, GlobalDescriptor};
+/// let picture = RgbImage::from_raw(2, 1, vec![10, 7, 0, 30, 7, 0]).expect("3 bytes a pixel");
 /// let mut features = [0.0; 6];
-/// MeanVarDescriptor.extract(&picture.whole(), &mut features);
+/// MeanVarDescriptor.extract(&View::whole(&picture)?, &mut features);
 /// assert_eq!(features, [20.0, 7.0, 0.0, 10.0, 0.0, 0.0]);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
@@ -29,12 +32,13 @@ impl GlobalDescriptor for MeanVarDescriptor {
         write(&sums, view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
         let mut table = DescriptorTable::zeros(views.grid(), 6);
         let (view_width, view_height) = views.view_size();
-        let pixel = |x, y| terms(scene.pixels()[y * scene.width() + x]);
-        let mut integral = vec![[0; 6]; scene.width() + 1];
+        let (pixels, (width, _)) = (rgb_pixels(scene), views.scene_size());
+        let pixel = |x, y| terms(pixels[y * width + x]);
+        let mut integral = vec![[0; 6]; width + 1];
         ColumnSums::for_each_band(views, pixel, |row, columns| {
             for (x, column) in columns.iter().enumerate() {
                 integral[x + 1] = std::array::from_fn(|i| integral[x][i] + column[i]);

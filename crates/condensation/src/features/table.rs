@@ -1,5 +1,7 @@
+use image::RgbImage;
+
 use crate::discrete::PositionGrid;
-use crate::{CondensationError, Picture, StateSpace, View, ViewGrid};
+use crate::{CondensationError, StateSpace, View, ViewGrid};
 
 /// A global feature of a view: a few numbers that tell views apart. Implement the first two methods to use your own.
 ///
@@ -15,7 +17,7 @@ pub trait GlobalDescriptor: Sync {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
         let mut table = DescriptorTable::zeros(views.grid(), self.n_components());
         for state in 0..views.grid().n_states() {

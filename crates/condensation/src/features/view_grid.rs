@@ -1,4 +1,6 @@
-use crate::{CondensationError, Picture, PositionGrid, View};
+use image::RgbImage;
+
+use crate::{CondensationError, PositionGrid, View};
 
 /// The views of a scene: a window that moves in steps of so many pixels, one state a position. [Kasprzak & Szynkiewicz, Sec. 2.3]
 ///
@@ -74,7 +76,7 @@ impl ViewGrid {
     ///
     /// # Errors
     /// [`CondensationError::State`], or [`CondensationError::Dimension`] when the scene is of another size.
-    pub fn view<'a>(&self, scene: &'a Picture, state: usize) -> Result<View<'a>, CondensationError> {
+    pub fn view<'a>(&self, scene: &'a RgbImage, state: usize) -> Result<View<'a>, CondensationError> {
         self.check(scene)?;
         Ok(View::inside(scene, self.corner(state)?, self.view))
     }
@@ -102,8 +104,9 @@ impl ViewGrid {
     }
 
     /// Whether a scene has the size these views were laid out for.
-    pub(crate) fn check(&self, scene: &Picture) -> Result<(), CondensationError> {
-        crate::error::check_size("width of the scene", self.scene.0, scene.width())?;
-        crate::error::check_size("height of the scene", self.scene.1, scene.height())
+    pub(crate) fn check(&self, scene: &RgbImage) -> Result<(), CondensationError> {
+        let (width, height) = crate::features::picture::size(scene);
+        crate::error::check_size("width of the scene", self.scene.0, width)?;
+        crate::error::check_size("height of the scene", self.scene.1, height)
     }
 }

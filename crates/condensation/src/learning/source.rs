@@ -1,6 +1,7 @@
-use crate::{
-    CondensationError, DescriptorTable, GlobalDescriptor, LightChange, Picture, StateSpace, ViewGrid,
-};
+use image::RgbImage;
+
+use crate::features::shifted;
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, LightChange, StateSpace, View, ViewGrid};
 
 /// Where learned views come from, and how they would look shifted and in another light.
 pub trait ViewSource {
@@ -31,7 +32,7 @@ pub trait ViewSource {
 /// Views of one large scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneViews<'a> {
-    scene: &'a Picture,
+    scene: &'a RgbImage,
     views: &'a ViewGrid,
 }
 
@@ -40,7 +41,7 @@ impl<'a> SceneViews<'a> {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.
-    pub fn new(scene: &'a Picture, views: &'a ViewGrid) -> Result<Self, CondensationError> {
+    pub fn new(scene: &'a RgbImage, views: &'a ViewGrid) -> Result<Self, CondensationError> {
         views.check(scene)?;
         Ok(Self { scene, views })
     }
@@ -80,20 +81,20 @@ impl ViewSource for SceneViews<'_> {
 /// One picture a state: places along a route, say.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureViews<'a> {
-    pictures: &'a [Picture],
+    pictures: &'a [RgbImage],
 }
 
 impl<'a> PictureViews<'a> {
     /// One picture a state; they need not be of one size.
     ///
     /// # Errors
-    /// [`CondensationError::Empty`] without pictures.
-    pub fn new(pictures: &'a [Picture]) -> Result<Self, CondensationError> {
+    /// [`CondensationError::Empty`] without pictures, [`CondensationError::Extent`] when one has no pixels.
+    pub fn new(pictures: &'a [RgbImage]) -> Result<Self, CondensationError> {
         if pictures.is_empty() {
-            Err(CondensationError::Empty { what: "pictures" })
-        } else {
-            Ok(Self { pictures })
+            return Err(CondensationError::Empty { what: "pictures" });
         }
+        pictures.iter().try_for_each(|picture| View::whole(picture).map(|_| ()))?;
+        Ok(Self { pictures })
     }
 }
 
@@ -111,7 +112,7 @@ impl ViewSource for PictureViews<'_> {
         let mut rows = Vec::with_capacity(self.pictures.len());
         for picture in self.pictures {
             let mut row = vec![0.0; feature.n_components()];
-            feature.extract(&light.apply(picture)?.shifted(dx, dy).whole(), &mut row);
+            feature.extract(&View::whole(&shifted(&light.apply(picture)?, dx, dy))?, &mut row);
             rows.push(row);
         }
         DescriptorTable::from_rows(&rows)

@@ -1,5 +1,8 @@
+use image::RgbImage;
+
+use crate::CondensationError;
 use crate::error::checked;
-use crate::{CondensationError, Picture};
+use crate::features::mapped;
 
 /// How a camera renders the light of a scene beside how it did when learning: $`J = g \cdot 255\, (I / 255)^γ + o`$.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +47,7 @@ impl LightChange {
     ///
     /// # Errors
     /// As [`table`](Self::table).
-    pub fn apply(&self, scene: &Picture) -> Result<Picture, CondensationError> {
-        Ok(scene.mapped(&[self.table()?; 3]))
+    pub fn apply(&self, scene: &RgbImage) -> Result<RgbImage, CondensationError> {
+        Ok(mapped(scene, &[self.table()?; 3]))
     }
 }

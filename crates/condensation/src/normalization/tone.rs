@@ -1,20 +1,23 @@
-use crate::Picture;
+use image::RgbImage;
+
+use crate::features::picture::rgb_pixels;
 
 /// A share of pixels for each of the 256 values.
 type Shares = [f64; 256];
 
-/// Tables, one a channel, that give `seen` the mean and the standard deviation of `learned`; for [`Picture::mapped`].
+/// Tables, one a channel, that give `seen` the mean and the standard deviation of `learned`; for [`mapped`](crate::mapped).
 ///
 /// A channel without contrast keeps its own and is only moved.
 ///
 /// ```
-/// use wayfix_condensation::{LightChange, Picture, affine_match};
-/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// use wayfix_condensation::{LightChange, RgbImage, affine_match, mapped};
+/// let bytes = [40, 80, 160].into_iter().flat_map(|grey| [grey; 3]).collect();
+/// let learned = RgbImage::from_raw(3, 1, bytes).expect("3 bytes a pixel");
 /// let seen = LightChange { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
-/// assert_eq!(seen.mapped(&affine_match(&seen, &learned)), learned);
+/// assert_eq!(mapped(&seen, &affine_match(&seen, &learned)), learned);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
-pub fn affine_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
+pub fn affine_match(seen: &RgbImage, learned: &RgbImage) -> [[u8; 256]; 3] {
     std::array::from_fn(|channel| {
         let (mean, sigma) = moments(&shares(seen, channel));
         let (learned_mean, learned_sigma) = moments(&shares(learned, channel));
@@ -23,18 +26,19 @@ pub fn affine_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
     })
 }
 
-/// Tables, one a channel, that give `seen` the histogram of `learned`; for [`Picture::mapped`].
+/// Tables, one a channel, that give `seen` the histogram of `learned`; for [`mapped`](crate::mapped).
 ///
 /// Each value goes to where its middle rank lies among the learned ranks, interpolated, so that any monotone tone curve is undone.
 ///
 /// ```
-/// use wayfix_condensation::{LightChange, Picture, histogram_match};
-/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// use wayfix_condensation::{LightChange, RgbImage, histogram_match, mapped};
+/// let bytes = [40, 80, 160].into_iter().flat_map(|grey| [grey; 3]).collect();
+/// let learned = RgbImage::from_raw(3, 1, bytes).expect("3 bytes a pixel");
 /// let seen = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
-/// assert_eq!(seen.mapped(&histogram_match(&seen, &learned)), learned);
+/// assert_eq!(mapped(&seen, &histogram_match(&seen, &learned)), learned);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
-pub fn histogram_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
+pub fn histogram_match(seen: &RgbImage, learned: &RgbImage) -> [[u8; 256]; 3] {
     std::array::from_fn(|channel| {
         let ranks = middle_ranks(&shares(seen, channel));
         let learned_ranks = middle_ranks(&shares(learned, channel));
@@ -42,12 +46,13 @@ pub fn histogram_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
     })
 }
 
-fn shares(picture: &Picture, channel: usize) -> Shares {
+fn shares(picture: &RgbImage, channel: usize) -> Shares {
     let mut counts = [0_u64; 256];
-    for pixel in picture.pixels() {
+    let pixels = rgb_pixels(picture);
+    for pixel in pixels {
         counts[usize::from(pixel[channel])] += 1;
     }
-    counts.map(|count| count as f64 / picture.pixels().len() as f64)
+    counts.map(|count| count as f64 / pixels.len() as f64)
 }
 
 fn moments(shares: &Shares) -> (f64, f64) {
@@ -86,14 +91,15 @@ fn rounded(value: f64) -> u8 {
 /// None when the learned scene has no contrast.
 ///
 /// ```
-/// use wayfix_condensation::{LightChange, Picture, light_match};
-/// let learned = Picture::from_rgb(16, 16, (0..=255_u8).flat_map(|grey| [grey; 3]).collect())?;
+/// use wayfix_condensation::{LightChange, RgbImage, light_match};
+/// let bytes = (0..=255).flat_map(|grey| [grey; 3]).collect();
+/// let learned = RgbImage::from_raw(16, 16, bytes).expect("3 bytes a pixel");
 /// let light = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 };
 /// let found = light_match(&light.apply(&learned)?, &learned).expect("contrast");
 /// assert!((found.gain - 0.7).abs() < 0.01 && (found.offset - 20.0).abs() < 1.0 && (found.gamma - 1.3).abs() < 0.02);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
-pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::LightChange> {
+pub fn light_match(seen: &RgbImage, learned: &RgbImage) -> Option<crate::LightChange> {
     let pairs: Vec<(f64, f64)> = (0..3)
         .flat_map(|channel| {
             let ranks = middle_ranks(&shares(seen, channel));

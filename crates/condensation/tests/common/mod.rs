@@ -5,11 +5,11 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    DescriptorTable, GridMove, NavigationEnvironment, Picture, PositionGrid, StateSpace,
+    DescriptorTable, GridMove, NavigationEnvironment, PositionGrid, RgbImage, StateSpace,
 };
 
 /// Soft blobs of colour on a gradient: smooth as photographs are, and different everywhere.
-pub(crate) fn scene(width: usize, height: usize, seed: u64) -> Picture {
+pub(crate) fn scene(width: usize, height: usize, seed: u64) -> RgbImage {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let blobs: Vec<[f64; 6]> = (0..60)
         .map(|_| {
@@ -27,7 +27,8 @@ pub(crate) fn scene(width: usize, height: usize, seed: u64) -> Picture {
             (110.0 + 0.2 * x + sum).clamp(8.0, 247.0) as u8
         })
     };
-    Picture::from_rgb(width, height, (0..width * height).flat_map(pixel).collect()).expect("that many pixels")
+    RgbImage::from_raw(width as u32, height as u32, (0..width * height).flat_map(pixel).collect())
+        .expect("3 bytes a pixel")
 }
 
 /// A robot on a grid of views.

@@ -2,8 +2,11 @@ use nalgebra::{DefaultAllocator, Dim, OMatrix, RealField, allocator::Allocator};
 
 use crate::{Manifold, epsilon, laws::LawViolation, to_f64};
 
-/// Fails when `error` is above `tolerance`, or is not a number.
-pub(super) fn within(
+/// Fails if `error` is above `tolerance` or not a number; for law suites of your own.
+///
+/// # Errors
+/// The violation of `law` in that `case`.
+pub fn within(
     law: &'static str,
     error: f64,
     tolerance: f64,

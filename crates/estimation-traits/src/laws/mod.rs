@@ -15,6 +15,7 @@ mod sample_motion;
 mod tangents;
 mod violation;
 
+pub use check::within;
 pub use filter::{FilterLawCall, FilterLawTrial, filter};
 pub use lie_group::lie_group;
 pub use likelihood::likelihood;

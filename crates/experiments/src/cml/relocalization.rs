@@ -11,8 +11,9 @@ use super::localize_trip::{known_start, taught};
 use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
+use crate::error_quantiles::error_quantiles;
 use wayfix_evaluation::errors::proportion_interval;
-use wayfix_evaluation::plot::{LinePlot, PlotSeries};
+use wayfix_evaluation::plot::LinePlot;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
@@ -182,24 +183,8 @@ fn report(title: &str, setup: &CmlExperimentSetup, courses: &[SimulatedDriveResu
 
 fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinePlot {
     let n_steps = courses.iter().map(|course| course.errors.len()).min().unwrap_or(0);
-    let quantile = |share: f64| {
-        let at = |step: usize| {
-            let mut errors: Vec<f64> = courses.iter().map(|course| course.errors[step]).collect();
-            errors.sort_by(f64::total_cmp);
-            let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
-            (VIEW_M * step as f64, errors[index].min(99.0))
-        };
-        (0..n_steps).map(at).collect()
-    };
-    LinePlot {
-        title: title.to_owned(),
-        x_label: "travelled, m".to_owned(),
-        y_label: "position error, m".to_owned(),
-        series: vec![
-            PlotSeries::new("median", quantile(0.5)),
-            PlotSeries::new("90 % of the runs are below", quantile(0.9)),
-            PlotSeries::new("95 %", quantile(0.95)),
-        ],
-        ..LinePlot::default()
-    }
+    error_quantiles(title, "travelled, m", n_steps, |step| {
+        let errors = courses.iter().map(|course| course.errors[step].min(99.0));
+        (VIEW_M * step as f64, errors.collect())
+    })
 }

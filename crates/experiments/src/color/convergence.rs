@@ -8,9 +8,10 @@ use wayfix_color_model::LightingBank;
 use wayfix_scene_sim::league::{LampSetting, LeagueParams};
 use wayfix_scene_sim::random::RandomStreams;
 
+use crate::error_quantiles::error_quantiles;
 use wayfix_evaluation::{
     errors::proportion_interval,
-    plot::{LinePlot, PlotError, PlotSeries},
+    plot::{LinePlot, PlotError},
     report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
@@ -163,31 +164,11 @@ impl ConvergenceCount {
 
     fn plot(&self) -> LinePlot {
         let n_frames = self.trials.iter().map(|trial| trial.errors.len()).max().unwrap_or(0);
-        let quantile = |share: f64| {
-            let at = |frame: usize| {
-                let mut errors: Vec<f64> =
-                    self.trials.iter().filter_map(|trial| trial.errors.get(frame).copied()).collect();
-                errors.sort_by(f64::total_cmp);
-                let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
-                (frame as f64, errors.get(index).copied().unwrap_or(f64::NAN))
-            };
-            (0..n_frames).map(at).collect()
-        };
-        LinePlot {
-            title: if self.kidnapped {
-                "Carried away at frame 40"
-            } else {
-                "From anywhere, in unknown light"
-            }
-            .to_owned(),
-            x_label: "frame".to_owned(),
-            y_label: "position error, m".to_owned(),
-            series: vec![
-                PlotSeries::new("median", quantile(0.5)),
-                PlotSeries::new("90 % of the runs are below", quantile(0.9)),
-                PlotSeries::new("95 %", quantile(0.95)),
-            ],
-            ..LinePlot::default()
-        }
+        let title =
+            if self.kidnapped { "Carried away at frame 40" } else { "From anywhere, in unknown light" };
+        error_quantiles(title, "frame", n_frames, |frame| {
+            let errors = self.trials.iter().filter_map(|trial| trial.errors.get(frame).copied());
+            (frame as f64, errors.collect())
+        })
     }
 }

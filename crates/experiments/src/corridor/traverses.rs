@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use wayfix_condensation::{DescriptorTable, DominantGrayCriterion, Picture};
+use wayfix_condensation::{DescriptorTable, DominantGrayCriterion, RgbImage, View};
 use wayfix_sensor_log::{EncodedImage, OpenOptions, RecordData};
 
 use wayfix_systems::views::{DescriptorKind, ViewsError};
@@ -18,7 +18,7 @@ pub(super) struct Traverses {
 /// A picture as it is stored and as pixels.
 pub(super) struct Frame {
     pub(super) image: EncodedImage,
-    pub(super) picture: Picture,
+    pub(super) picture: RgbImage,
 }
 
 impl Traverses {
@@ -41,12 +41,12 @@ impl Traverses {
 /// The features of every frame.
 pub(super) fn features(frames: &[Frame], kind: DescriptorKind) -> Result<DescriptorTable> {
     let feature = kind.feature(DominantGrayCriterion::default());
-    let row = |frame: &Frame| {
+    let row = |frame: &Frame| -> Result<Vec<f64>> {
         let mut row = vec![0.0; feature.n_components()];
-        feature.extract(&frame.picture.whole(), &mut row);
-        row
+        feature.extract(&View::whole(&frame.picture)?, &mut row);
+        Ok(row)
     };
-    Ok(DescriptorTable::from_rows(&frames.iter().map(row).collect::<Vec<_>>())?)
+    Ok(DescriptorTable::from_rows(&frames.iter().map(row).collect::<Result<Vec<_>>>()?)?)
 }
 
 fn read(folder: &Path) -> Result<Vec<Frame>> {
@@ -58,7 +58,8 @@ fn read(folder: &Path) -> Result<Vec<Frame>> {
     });
     let frame = |image: EncodedImage| -> Result<Frame> {
         let decoded = image.decode_rgb().with_context(|| folder.display().to_string())?;
-        let picture = Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?;
+        let picture = RgbImage::from_raw(decoded.width, decoded.height, decoded.pixels)
+            .context("a decoded image has not three bytes a pixel")?;
         Ok(Frame { image, picture })
     };
     images.map(frame).collect()

@@ -113,6 +113,8 @@ fn pool(known: Option<Estimate>, value: f64, variance: f64) -> Result<(Estimate,
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::Gaussian;
     use nalgebra::Vector1;
@@ -133,7 +135,7 @@ mod tests {
             let (mean, variance) = group.estimate(0).unwrap();
             let pooled = log_density(mean, theta, variance) + group.log_agreement();
             // Ten-odd roundings of terms below 200.
-            assert!((one_by_one - pooled).abs() < 1e-12, "{one_by_one} against {pooled}");
+            assert_abs_diff_eq!(one_by_one, pooled, epsilon = 1e-12);
         }
     }
 

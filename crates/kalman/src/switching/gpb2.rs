@@ -4,10 +4,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::{
     MarkovChain,
-    hypotheses::{Hypothesis, merged, model_probabilities},
-    imm::updated,
+    hypotheses::{Hypothesis, SwitchingBelief, merged, model_probabilities},
 };
-use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
+use crate::{FilterForm, Innovation, KalmanError, error::Checked};
 
 /// The generalized pseudo-Bayesian filter of second order: every pair of last and present model is a hypothesis of its own until after
 /// the update, then those with the same present model are merged.
@@ -33,10 +32,7 @@ pub struct Gpb2Filter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
-    models: Vec<M>,
-    chain: MarkovChain,
-    form: F,
-    hypotheses: Vec<Hypothesis<F::Belief>>,
+    belief: SwitchingBelief<M, F, F::Belief>,
 }
 
 impl<M: MotionModel, F: FilterForm<M::State>> Gpb2Filter<M, F>
@@ -53,16 +49,12 @@ where
         form: F,
         prior: &Gaussian<M::State>,
     ) -> Result<Self, KalmanError> {
-        check::dimension("bank of models", chain.n_models(), models.len())?;
-        let belief = form.belief_from(prior)?;
-        let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
-        let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
-        Ok(Self { models, chain, form, hypotheses })
+        Ok(Self { belief: SwitchingBelief::new(models, chain, form, prior)? })
     }
 
     /// The present probability of each model.
     pub fn model_probabilities(&self) -> Vec<f64> {
-        model_probabilities(&self.hypotheses, self.models.len())
+        self.belief.model_probabilities()
     }
 
     /// The belief over all models, moment-matched.
@@ -70,7 +62,7 @@ where
     /// # Errors
     /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
-        merged(self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+        self.belief.merged()
     }
 
     /// Moves the belief of every model by `control` with every model.
@@ -79,17 +71,18 @@ where
     /// Returns an error if a model output is invalid; the filter is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         // Pairs are left from a prediction without a measurement after it.
-        let mut pairs = Vec::with_capacity(self.models.len() * self.models.len());
-        for from in self.merged_by_model(&self.hypotheses)? {
-            for (model, motion) in self.models.iter().enumerate() {
-                let probability = from.probability * self.chain.probability(from.model, model);
+        let SwitchingBelief { models, chain, form, hypotheses } = &self.belief;
+        let mut pairs = Vec::with_capacity(models.len() * models.len());
+        for from in self.merged_by_model(hypotheses)? {
+            for (model, motion) in models.iter().enumerate() {
+                let probability = from.probability * chain.probability(from.model, model);
                 if probability > 0.0 {
-                    let belief = self.form.predict(&from.belief, motion, control)?;
+                    let belief = form.predict(&from.belief, motion, control)?;
                     pairs.push(Hypothesis { model, belief, probability });
                 }
             }
         }
-        self.hypotheses = pairs;
+        self.belief.hypotheses = pairs;
         Ok(())
     }
 
@@ -107,18 +100,18 @@ where
         S: SensorModel<State = M::State>,
         DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
     {
-        let (innovations, hypotheses) = updated(&self.form, &self.hypotheses, sensor, measurement)?;
-        self.hypotheses = self.merged_by_model(&hypotheses)?;
+        let (innovations, hypotheses) = self.belief.updated(sensor, measurement)?;
+        self.belief.hypotheses = self.merged_by_model(&hypotheses)?;
         Ok(innovations)
     }
 
     /// One hypothesis per model that has any probability left.
     fn merged_by_model(&self, hypotheses: &[Hypothesis<F::Belief>]) -> Checked<Vec<Hypothesis<F::Belief>>> {
-        let probabilities = model_probabilities(hypotheses, self.models.len());
+        let probabilities = model_probabilities(hypotheses, self.belief.models.len());
         let possible = probabilities.into_iter().enumerate().filter(|(_, probability)| *probability > 0.0);
         let merge = |(model, probability)| {
             let same = hypotheses.iter().filter(|h| h.model == model).map(|h| (h.probability, &h.belief));
-            let belief = self.form.belief_from(&merged(same)?)?;
+            let belief = self.belief.form.belief_from(&merged(same)?)?;
             Ok(Hypothesis { model, belief, probability })
         };
         possible.map(merge).collect()

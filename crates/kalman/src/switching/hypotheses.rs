@@ -1,10 +1,74 @@
 //! Weighted hypotheses about the active model.
 
 use nalgebra::DefaultAllocator;
-use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
+use wayfix_estimation_traits::{LogWeight, Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::{Gaussian, moment_matched};
 
-use crate::{KalmanError, error::Checked};
+use super::MarkovChain;
+use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
+
+/// Models, the chain of switches between them, and hypotheses about which of them is active.
+#[derive(Clone, Debug)]
+pub(super) struct SwitchingBelief<M, F, B> {
+    pub(super) models: Vec<M>,
+    pub(super) chain: MarkovChain,
+    pub(super) form: F,
+    pub(super) hypotheses: Vec<Hypothesis<B>>,
+}
+
+impl<M: MotionModel, F: FilterForm<M::State>> SwitchingBelief<M, F, F::Belief>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    /// One hypothesis per model, all with the belief `prior`.
+    pub(super) fn new(
+        models: Vec<M>,
+        chain: MarkovChain,
+        form: F,
+        prior: &Gaussian<M::State>,
+    ) -> Checked<Self> {
+        check::dimension("bank of models", chain.n_models(), models.len())?;
+        let belief = form.belief_from(prior)?;
+        let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
+        let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
+        Ok(Self { models, chain, form, hypotheses })
+    }
+
+    /// The probability of each model.
+    pub(super) fn model_probabilities(&self) -> Vec<f64> {
+        model_probabilities(&self.hypotheses, self.models.len())
+    }
+
+    /// The one Gaussian with the moments of all hypotheses.
+    pub(super) fn merged(&self) -> Checked<Gaussian<M::State>> {
+        merged(self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+    }
+
+    /// Every hypothesis corrected and weighted by `measurement`.
+    #[allow(clippy::type_complexity, reason = "innovations and the hypotheses they correct, one each")]
+    pub(super) fn updated<S>(
+        &self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Checked<(Vec<Innovation<M::State, S::Measurement>>, Vec<Hypothesis<F::Belief>>)>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let mut innovations = Vec::with_capacity(self.hypotheses.len());
+        let mut corrected = self.hypotheses.clone();
+        for hypothesis in &mut corrected {
+            let (innovation, belief) = self.form.update(&hypothesis.belief, sensor, measurement, |_| true)?;
+            if let Some(belief) = belief {
+                hypothesis.belief = belief;
+            }
+            innovations.push(innovation);
+        }
+        let log_likelihoods: Vec<f64> = innovations.iter().map(Innovation::log_likelihood).collect();
+        reweigh(&mut corrected, &log_likelihoods)?;
+        Ok((innovations, corrected))
+    }
+}
 
 /// A belief under the assumption that `model` is active, and its probability.
 #[derive(Clone, Debug)]

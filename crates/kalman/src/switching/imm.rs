@@ -4,9 +4,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::{
     MarkovChain,
-    hypotheses::{Hypothesis, merged, model_probabilities, reweigh},
+    hypotheses::{Hypothesis, SwitchingBelief, merged},
 };
-use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
+use crate::{FilterForm, Innovation, KalmanError, error::Checked};
 
 /// The interacting multiple model filter: one belief per model, mixed before every prediction.
 ///
@@ -34,10 +34,7 @@ pub struct ImmFilter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
-    models: Vec<M>,
-    chain: MarkovChain,
-    form: F,
-    hypotheses: Vec<Hypothesis<F::Belief>>,
+    belief: SwitchingBelief<M, F, F::Belief>,
 }
 
 impl<M: MotionModel, F: FilterForm<M::State>> ImmFilter<M, F>
@@ -54,21 +51,17 @@ where
         form: F,
         prior: &Gaussian<M::State>,
     ) -> Result<Self, KalmanError> {
-        check::dimension("bank of models", chain.n_models(), models.len())?;
-        let belief = form.belief_from(prior)?;
-        let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
-        let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
-        Ok(Self { models, chain, form, hypotheses })
+        Ok(Self { belief: SwitchingBelief::new(models, chain, form, prior)? })
     }
 
     /// The present probability of each model.
     pub fn model_probabilities(&self) -> Vec<f64> {
-        model_probabilities(&self.hypotheses, self.models.len())
+        self.belief.model_probabilities()
     }
 
     /// The belief if `model` is active; `None` if there is no such model.
     pub fn model_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
-        self.hypotheses.get(model).map(|hypothesis| hypothesis.belief.clone().into())
+        self.belief.hypotheses.get(model).map(|hypothesis| hypothesis.belief.clone().into())
     }
 
     /// The belief over all models, moment-matched.
@@ -76,7 +69,7 @@ where
     /// # Errors
     /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
-        merged(self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+        self.belief.merged()
     }
 
     /// Mixes the beliefs and moves each by `control` with its own model.
@@ -84,13 +77,15 @@ where
     /// # Errors
     /// Returns an error if a model output is invalid; the filter is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
-        let probabilities = self.chain.predict_probabilities(&self.model_probabilities());
+        let SwitchingBelief { models, chain, form, .. } = &self.belief;
+        let probabilities = chain.predict_probabilities(&self.model_probabilities());
         let predict = |(model, &probability): (usize, &f64)| {
             let mixed = self.mixed_for(model, probability)?;
-            let belief = self.form.predict(&mixed, &self.models[model], control)?;
+            let belief = form.predict(&mixed, &models[model], control)?;
             Ok(Hypothesis { model, belief, probability })
         };
-        self.hypotheses = probabilities.iter().enumerate().map(predict).collect::<Checked<Vec<_>>>()?;
+        self.belief.hypotheses =
+            probabilities.iter().enumerate().map(predict).collect::<Checked<Vec<_>>>()?;
         Ok(())
     }
 
@@ -108,46 +103,18 @@ where
         S: SensorModel<State = M::State>,
         DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
     {
-        let (innovations, hypotheses) = updated(&self.form, &self.hypotheses, sensor, measurement)?;
-        self.hypotheses = hypotheses;
+        let (innovations, hypotheses) = self.belief.updated(sensor, measurement)?;
+        self.belief.hypotheses = hypotheses;
         Ok(innovations)
     }
 
     /// The belief model `to` starts from: all beliefs, weighted by the probability of the transition to it.
     fn mixed_for(&self, to: usize, probability: f64) -> Checked<F::Belief> {
+        let SwitchingBelief { chain, form, hypotheses, .. } = &self.belief;
         if probability == 0.0 {
-            return Ok(self.hypotheses[to].belief.clone());
+            return Ok(hypotheses[to].belief.clone());
         }
-        let weighted =
-            self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
-        self.form.belief_from(&merged(weighted)?)
+        let weighted = hypotheses.iter().map(|h| (h.probability * chain.probability(h.model, to), &h.belief));
+        form.belief_from(&merged(weighted)?)
     }
-}
-
-/// Every hypothesis corrected and weighed by `measurement`.
-#[allow(clippy::type_complexity, reason = "innovations and the hypotheses they correct, one each")]
-pub(super) fn updated<X, F, S>(
-    form: &F,
-    hypotheses: &[Hypothesis<F::Belief>],
-    sensor: &S,
-    measurement: &S::Measurement,
-) -> Checked<(Vec<Innovation<X, S::Measurement>>, Vec<Hypothesis<F::Belief>>)>
-where
-    X: Manifold,
-    F: FilterForm<X>,
-    S: SensorModel<State = X>,
-    DefaultAllocator: StateAlloc<X::Dim> + UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
-{
-    let mut innovations = Vec::with_capacity(hypotheses.len());
-    let mut corrected = hypotheses.to_vec();
-    for hypothesis in &mut corrected {
-        let (innovation, belief) = form.update(&hypothesis.belief, sensor, measurement, |_| true)?;
-        if let Some(belief) = belief {
-            hypothesis.belief = belief;
-        }
-        innovations.push(innovation);
-    }
-    let log_likelihoods: Vec<f64> = innovations.iter().map(Innovation::log_likelihood).collect();
-    reweigh(&mut corrected, &log_likelihoods)?;
-    Ok((innovations, corrected))
 }

@@ -86,6 +86,12 @@ impl EncodedImage {
         Self { format, bytes: bytes.into() }
     }
 
+    /// Stores a file of the format that its first bytes tell; `None` if they tell none.
+    pub fn from_bytes(bytes: impl Into<Arc<[u8]>>) -> Option<Self> {
+        let bytes = bytes.into();
+        Some(Self { format: ImageFormat::of_bytes(&bytes)?, bytes })
+    }
+
     /// Its type on the web.
     pub fn media_type(&self) -> &'static str {
         match self.format {

@@ -1,11 +1,31 @@
+use std::io::BufRead;
+
+use super::Lines;
 use super::clock_faults::{ClockFault, clock_faults};
-use crate::{ReadReport, RowProblem, RowProblemKind, Stamp};
+use super::row::RowError;
+use crate::{LogError, ReadReport, RowProblem, RowProblemKind, Stamp};
 
 /// Content of a row of a text file, with its line and its time.
 pub(super) struct Timed<T> {
     pub(super) row: u64,
     pub(super) stamp: Stamp,
     pub(super) item: T,
+}
+
+/// The rows that `read_row` accepts, [in time order](in_time_order); the others go into the report.
+pub(super) fn rows_in_time_order<R: BufRead, T>(
+    lines: Lines<R>,
+    report: &mut ReadReport,
+    mut read_row: impl FnMut(&str) -> Result<(Stamp, T), RowError>,
+) -> Result<Vec<Timed<T>>, LogError> {
+    let file = lines.file_name();
+    let mut rows = Vec::new();
+    lines.for_each_numbered_row(report, |row, text| {
+        let (stamp, item) = read_row(text)?;
+        rows.push(Timed { row, stamp, item });
+        Ok(())
+    })?;
+    Ok(in_time_order(&file, rows, report))
 }
 
 /// The rows of a file in time order. Skips rows whose stamp is far from all others. If the clock is set back, the longest stretch is read. Sorts

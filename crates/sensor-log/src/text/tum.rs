@@ -10,7 +10,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{RowError, exactly, number, stamp};
-use super::time_order::{Timed, in_time_order};
+use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
 use crate::{LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind, WriteReport};
@@ -22,16 +22,12 @@ pub(crate) fn looks_like(row: &str) -> bool {
 /// The records, sorted by time.
 pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let order = order_of(path)?;
-    let lines = Lines::open(path)?;
-    let file = lines.file_name();
-    let mut rows = Vec::new();
-    lines.for_each_numbered_row(report, |row, text| {
+    let rows = rows_in_time_order(Lines::open(path)?, report, |text| {
         let Record { stamp, data } = parse(text, &order, kind)?;
-        rows.push(Timed { row, stamp, item: data });
-        Ok(())
+        Ok((stamp, data))
     })?;
     let to_record = |Timed { stamp, item: data, .. }| Record { stamp, data };
-    Ok(in_time_order(&file, rows, report).into_iter().map(to_record).collect())
+    Ok(rows.into_iter().map(to_record).collect())
 }
 
 /// Positions of the columns t, x, y, z, qx, qy, qz, qw.

@@ -12,7 +12,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
-use super::time_order::{Timed, in_time_order};
+use super::time_order::{Timed, rows_in_time_order};
 use crate::{
     Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, RowProblemKind, Stamp,
     TrueLandmark, Velocity,
@@ -164,13 +164,5 @@ fn read_stamped<T, const N: usize>(
     report: &mut ReadReport,
     read_row: impl Fn([&str; N]) -> Result<(Stamp, T), RowError>,
 ) -> Result<Vec<Timed<T>>, LogError> {
-    let lines = Lines::open(path)?;
-    let file = lines.file_name();
-    let mut rows = Vec::new();
-    lines.for_each_numbered_row(report, |row, text| {
-        let (stamp, item) = read_row(columns(text)?)?;
-        rows.push(Timed { row, stamp, item });
-        Ok(())
-    })?;
-    Ok(in_time_order(&file, rows, report))
+    rows_in_time_order(Lines::open(path)?, report, |text| read_row(columns(text)?))
 }

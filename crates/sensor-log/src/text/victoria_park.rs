@@ -16,7 +16,7 @@ use wayfix_estimation_traits::wrap_angle;
 use super::Lines;
 use super::gps::drop_jumps;
 use super::row::{RowError, comma_columns, id, number, stamp};
-use super::time_order::{Timed, in_time_order};
+use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::format::shortened;
 use crate::{
     AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, Stamp,
@@ -118,14 +118,7 @@ fn read_rows<T, const N: usize>(
 ) -> Result<Vec<Timed<T>>, LogError> {
     let mut lines = Lines::open(path)?;
     check_header(&mut lines, path, header)?;
-    let file = lines.file_name();
-    let mut rows = Vec::new();
-    lines.for_each_numbered_row(report, |row, text| {
-        let (stamp, item) = read_row(comma_columns(text)?)?;
-        rows.push(Timed { row, stamp, item });
-        Ok(())
-    })?;
-    Ok(in_time_order(&file, rows, report))
+    rows_in_time_order(lines, report, |text| read_row(comma_columns(text)?))
 }
 
 /// Rejects unexpected columns, which would give a plausible but wrong log.

@@ -52,6 +52,7 @@ impl JointInnovation {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::{DMatrix, DVector, linalg::Cholesky};
 
     use super::*;
@@ -71,12 +72,12 @@ mod tests {
         };
         for row in 0..6 {
             push(&mut joint, row);
-            assert!((joint.nis() - dense(row + 1)).abs() < 1e-9 * dense(6));
+            assert_abs_diff_eq!(joint.nis(), dense(row + 1), epsilon = 1e-9 * dense(6));
         }
         joint.truncate(2);
-        assert!((joint.nis() - dense(2)).abs() < 1e-9 * dense(6));
+        assert_abs_diff_eq!(joint.nis(), dense(2), epsilon = 1e-9 * dense(6));
         push(&mut joint, 2);
-        assert!((joint.nis() - dense(3)).abs() < 1e-9 * dense(6));
+        assert_abs_diff_eq!(joint.nis(), dense(3), epsilon = 1e-9 * dense(6));
         assert!(joint.push([0.0, 0.0, 0.0, -1.0].into_iter(), 0.0).is_none());
         assert_eq!(joint.dimension(), 3);
     }

@@ -3,7 +3,9 @@ use std::f64::consts::PI;
 use nalgebra::{Const, DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 
-use super::{CorrelatedNoise, PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
+use super::{
+    CorrelatedNoise, PLANAR_SYMMETRIES, planar::carried_point_jacobian, point_symmetry, pose_symmetry,
+};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Range and bearing of a point from the robot.
@@ -156,16 +158,11 @@ impl LandmarkModel for RangeBearingSensor {
         measurement: &RangeBearing,
     ) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         let q = measurement.point();
-        let rotation = robot.rotation_matrix();
         let by_measurement = placement_jacobian(robot, measurement);
         let turned = by_measurement.column(1).into_owned(); // a rotation of the robot moves the point like a change of the bearing
         NewLandmark {
             landmark: robot.transform(&q),
-            robot_jacobian: Matrix2x3::from_columns(&[
-                rotation.column(0).into_owned(),
-                rotation.column(1).into_owned(),
-                turned,
-            ]),
+            robot_jacobian: carried_point_jacobian(robot, turned),
             covariance: by_measurement * self.noise(measurement) * by_measurement.transpose(),
         }
     }

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, TangentMatrix};
 
-use super::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
+use super::{PLANAR_SYMMETRIES, planar::carried_point_jacobian, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Position of a point in the robot frame, metres: x forward, y left.
@@ -57,15 +57,10 @@ impl LandmarkModel for RelativePositionSensor {
         robot: &Pose2<f64>,
         measurement: &RelativePosition,
     ) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
-        let rotation = robot.rotation_matrix();
-        let turned = rotation * Vector2::new(-measurement.y, measurement.x);
+        let turned = robot.rotation_matrix() * Vector2::new(-measurement.y, measurement.x);
         NewLandmark {
             landmark: robot.transform(measurement),
-            robot_jacobian: Matrix2x3::from_columns(&[
-                rotation.column(0).into_owned(),
-                rotation.column(1).into_owned(),
-                turned,
-            ]),
+            robot_jacobian: carried_point_jacobian(robot, turned),
             covariance: self.noise(measurement), // isotropic, so rotating it changes nothing
         }
     }

@@ -2,7 +2,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::CmlSystem;
-use crate::system::{self, EstimateLog, EstimateWriter};
+use crate::system::{self, EstimateLog, EstimateWriter, write_pose};
 
 /// Writes the views, the path and the references of an appearance map beside the records, for viewers.
 pub type CmlEstimateLog = EstimateLog<CmlDrawing>;
@@ -26,8 +26,7 @@ impl system::EstimateDrawing for CmlDrawing {
         let (stamp, world) = (frame.stamp, topics::WORLD_FRAME);
         if let Some(pose) = frame.pose.as_ref().map(|pose| *pose.mean()) {
             self.path.push(pose);
-            writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, &pose)?;
-            writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, &pose)?;
+            write_pose(writer, stamp, &pose)?;
         }
         if self.n_written % PERIOD == 1 {
             writer.poses_in_frame("/estimate/path", stamp, world, &self.path)?;

@@ -1,10 +1,8 @@
-use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{DrawingShape, LogError, Record, ViewerDrawing, topics};
+use wayfix_sensor_log::{LogError, Record, topics};
 
-use super::{ColorFrameResult, ColorSystem};
-use crate::system::{self, EstimateLog, EstimateWriter};
+use super::ColorSystem;
+use crate::system::{self, EstimateLog, EstimateWriter, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateLog = EstimateLog<ColorDrawing>;
@@ -18,9 +16,6 @@ pub struct ColorDrawing {
 
 /// Number of frames between two writes of the whole path.
 const PATH_PERIOD: usize = 20;
-/// Ellipses are drawn at two standard deviations.
-const SIGMAS: f64 = 2.0;
-const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
 
 impl system::EstimateDrawing for ColorDrawing {
     type System = ColorSystem;
@@ -35,9 +30,7 @@ impl system::EstimateDrawing for ColorDrawing {
         self.n_written += 1;
         let (stamp, pose, world) = (frame.stamp, frame.pose.mean(), topics::WORLD_FRAME);
         self.path.push(*pose);
-        writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
-        writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
-        writer.scene_update("/estimate/robot", stamp, world, &robot(frame))?;
+        write_robot(writer, stamp, pose, frame.pose.covariance())?;
         if let Some(localizer) = system.localizer() {
             let points: Vec<[f64; 2]> = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
             writer.point_cloud("/estimate/particles", stamp, world, &points)?;
@@ -47,18 +40,4 @@ impl system::EstimateDrawing for ColorDrawing {
         }
         Ok(())
     }
-}
-
-fn robot(frame: &ColorFrameResult) -> Vec<ViewerDrawing> {
-    let pose = frame.pose.mean();
-    let rotation = pose.rotation_matrix();
-    let covariance: Matrix2<f64> =
-        rotation * frame.pose.covariance().fixed_view::<2, 2>(0, 0) * rotation.transpose();
-    let Ok(ellipse) = CovarianceEllipse::at_sigmas(&covariance, SIGMAS) else { return Vec::new() };
-    let shape = DrawingShape::Ellipse {
-        center: [pose.x(), pose.y()],
-        semi_axes: [ellipse.semi_major, ellipse.semi_minor],
-        angle: ellipse.angle,
-    };
-    vec![ViewerDrawing { id: "robot".to_owned(), color: ROBOT_COLOR, shape }]
 }

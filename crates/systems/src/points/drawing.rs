@@ -2,7 +2,7 @@ use wayfix_sensor_log::{DrawingShape, LogError, Stamp, ViewerDrawing, topics};
 use wayfix_slam_ekf::EkfSlam;
 
 use super::PointSensor;
-use crate::{slam::ellipse, system::EstimateWriter};
+use crate::system::{EstimateWriter, ellipse};
 
 const LANDMARK_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 

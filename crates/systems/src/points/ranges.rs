@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use wayfix_slam_ekf::{JointCompatibility, LandmarkConfirmationParams, NearestNeighbour, SlamError};
 
 use super::PointSlamParams;
-use crate::settings::number;
+use crate::{settings::number, slam::increment_numbers};
 
 /// What a parameter may be, for the machine and in words.
 type Range = (RangeInclusive<f64>, &'static str);
@@ -84,18 +84,16 @@ impl PointSlamParams {
             number!(velocity_noise.angular_sigma_per_meter, NOT_NEGATIVE),
             number!(velocity_noise.standing_factor, NOT_NEGATIVE),
             number!(velocity_noise.speed_loss_in_turns, NOT_NEGATIVE),
-            number!(increment_noise.translation_variance_per_meter, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_meter, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_radian, NOT_NEGATIVE),
-            number!(increment_noise.translation_variance_per_step, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_step, NOT_NEGATIVE),
             number!(filter.confirmation.min_detection_rate, SHARE),
             number!(unlabelled_confirmation.min_detection_rate, SHARE),
             ("filter.confirmation.n_detections", times_seen(&filter.confirmation), TIMES_SEEN),
             number!(filter.confirmation.restart_nis, THRESHOLD),
             ("unlabelled_confirmation.n_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
             number!(unlabelled_confirmation.restart_nis, THRESHOLD),
-        ] {
+        ]
+        .into_iter()
+        .chain(increment_numbers(increment_noise).map(|(name, value)| (name, value, NOT_NEGATIVE)))
+        {
             if !range.contains(&value) {
                 return Err(SlamError::Parameter { name, value, range: words });
             }

@@ -1,13 +1,12 @@
 use std::marker::PhantomData;
 
-use nalgebra::{DefaultAllocator, Matrix2};
+use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{DrawingShape, LogError, Record, ViewerDrawing, topics};
+use wayfix_sensor_log::{LogError, Record, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{FrontEnd, SlamSystem, StampedEstimate};
-use crate::system::{self, EstimateLog, EstimateWriter};
+use super::{FrontEnd, SlamSystem};
+use crate::system::{self, EstimateLog, EstimateWriter, write_robot};
 
 /// Path and map beside the records, for viewers.
 pub type SlamEstimateLog<F> = EstimateLog<SlamDrawing<F>>;
@@ -27,9 +26,6 @@ impl<F> Default for SlamDrawing<F> {
 
 /// The map and the whole path are written with every so many estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
-/// Ellipses are drawn at two standard deviations.
-const SIGMAS: f64 = 2.0;
-const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
 
 impl<F: FrontEnd> system::EstimateDrawing for SlamDrawing<F>
 where
@@ -45,7 +41,7 @@ where
     ) -> Result<(), LogError> {
         for estimate in &system.stamped_estimates()[self.n_written..] {
             self.path.push(estimate.pose);
-            draw_stamped_estimate(estimate, writer)?;
+            write_robot(writer, estimate.stamp, &estimate.pose, &estimate.covariance)?;
             if self.path.len() % MAP_PERIOD == 1 {
                 let (stamp, world) = (estimate.stamp, topics::WORLD_FRAME);
                 writer.poses_in_frame("/estimate/path", stamp, world, &self.path)?;
@@ -55,38 +51,4 @@ where
         self.n_written = system.stamped_estimates().len();
         Ok(())
     }
-}
-
-/// The robot and how sure it is of its place.
-fn draw_stamped_estimate(
-    stamped_estimate: &StampedEstimate,
-    writer: &mut EstimateWriter,
-) -> Result<(), LogError> {
-    let (stamp, pose, world) = (stamped_estimate.stamp, &stamped_estimate.pose, topics::WORLD_FRAME);
-    writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
-    writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
-    writer.scene_update("/estimate/robot", stamp, world, &robot(stamped_estimate))
-}
-
-fn robot(stamped_estimate: &StampedEstimate) -> Vec<ViewerDrawing> {
-    let rotation = stamped_estimate.pose.rotation_matrix();
-    let covariance = rotation * stamped_estimate.covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
-    let center = [stamped_estimate.pose.x(), stamped_estimate.pose.y()];
-    ellipse("robot".to_owned(), ROBOT_COLOR, center, covariance).into_iter().collect()
-}
-
-/// Nothing while the covariance is singular (a start pose known exactly).
-pub(crate) fn ellipse(
-    id: String,
-    color: [f64; 4],
-    center: [f64; 2],
-    covariance: Matrix2<f64>,
-) -> Option<ViewerDrawing> {
-    let ellipse = CovarianceEllipse::at_sigmas(&covariance, SIGMAS).ok()?;
-    let semi_axes = [ellipse.semi_major, ellipse.semi_minor];
-    Some(ViewerDrawing {
-        id,
-        color,
-        shape: DrawingShape::Ellipse { center, semi_axes, angle: ellipse.angle },
-    })
 }

@@ -11,6 +11,7 @@ mod odometry_delay;
 mod odometry_lag;
 mod overlap;
 mod plausible_increment;
+mod robot_drawing;
 mod stopwatch;
 
 pub use drive::{RunStep, drive};
@@ -24,6 +25,7 @@ pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
 pub use plausible_increment::IncrementPlausibilityCheck;
+pub(crate) use robot_drawing::{ellipse, write_pose, write_robot};
 pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;

@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_sensor_log::EncodedImage;
 use wayfix_visual_tracking::{BoundingBox, PixelMask, RgbImage, TrackingError};
 
 use super::TrackSystemError;
@@ -31,9 +31,8 @@ impl TargetStart {
         let bytes =
             fs::read(path).map_err(|source| TrackSystemError::Read { path: path.to_owned(), source })?;
         let wrong = |reason: String| TrackSystemError::NotAMask { path: path.to_owned(), reason };
-        let format = ImageFormat::of_bytes(&bytes).ok_or_else(|| wrong("it is no picture".to_owned()))?;
-        let decoded =
-            EncodedImage::new(format, bytes).decode_rgb().map_err(|error| wrong(error.to_string()))?;
+        let image = EncodedImage::from_bytes(bytes).ok_or_else(|| wrong("it is no picture".to_owned()))?;
+        let decoded = image.decode_rgb().map_err(|error| wrong(error.to_string()))?;
         let (width, height) = (decoded.width as usize, decoded.height as usize);
         let is_on = |u: usize, v: usize| decoded.pixels[3 * (v * width + u)..][..3] != [0; 3];
         PixelMask::from_fn(width, height, is_on).map(Self::Mask).map_err(|error| wrong(error.to_string()))

@@ -1,5 +1,5 @@
 use anyhow::Result;
-use wayfix_condensation::Picture;
+use wayfix_condensation::RgbImage;
 use wayfix_sensor_log::{
     EncodedImage, ImageOutline, MessageSinks, MessageWriter, Record, RecordData, Stamp, topics,
 };
@@ -20,9 +20,8 @@ const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 ///
 /// # Errors
 /// Returns an error if the drive cannot be repeated, an image cannot be encoded or a sink fails.
-pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: MessageSinks) -> Result<()> {
-    let (width, height) = (real.width() as u32, real.height() as u32);
-    let scene = EncodedImage::jpeg(width, height, real.pixels().as_flattened(), JPEG_QUALITY)?;
+pub fn draw_drive(run: &ViewsRun, real: &RgbImage, seed: u64, sinks: MessageSinks) -> Result<()> {
+    let scene = EncodedImage::jpeg(real.width(), real.height(), real.as_raw(), JPEG_QUALITY)?;
     let mut drawing = EstimateDrawing { writer: MessageWriter::into_sink(sinks), scene };
     let mut failure = None;
     run.system.trial(seed, slowest(&run.trials), |step| {

@@ -7,12 +7,12 @@
 //!
 //! ```
 //! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams};
-//! use wayfix_condensation::Picture;
+//! use wayfix_condensation::RgbImage;
 //! let pixel = |i: usize| {
 //!     let (x, y) = ((i % 160) as f64, (i / 160) as f64);
 //!     [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0].map(|phase| (60.0 * phase.sin() + 120.0) as u8)
 //! };
-//! let learned = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(pixel).collect())?;
+//! let learned = RgbImage::from_raw(160, 120, (0..160 * 120).flat_map(pixel).collect()).expect("3 bytes a pixel");
 //! let real = SceneChange::default().of(&learned)?; // other light, some pixels aside
 //! let setup = ViewSystemConfig { view: 64, step: 16, feature: DescriptorKind::Joined, normalization: LightNormalization::WholeScene };
 //! let run = views::run(&learned, &real, &setup, &ViewsParams::default(), 10, 1, &|| ())?;

@@ -1,6 +1,6 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{AppearanceLearningParams, Picture, light_match};
+use wayfix_condensation::{AppearanceLearningParams, RgbImage, light_match, mapped};
 
 use super::{ViewsError, ViewsParams};
 
@@ -39,13 +39,13 @@ impl LightNormalization {
     ///
     /// # Errors
     /// Returns [`ViewsError::NoContrast`] if there is no contrast to match.
-    pub fn apply(self, real: &Picture, learned: &Picture) -> Result<Picture, ViewsError> {
+    pub fn apply(self, real: &RgbImage, learned: &RgbImage) -> Result<RgbImage, ViewsError> {
         match self {
             Self::None | Self::Online => Ok(real.clone()),
             Self::WholeScene => {
                 let light =
                     light_match(real, learned).ok_or(ViewsError::NoContrast { which: "learned scene" })?;
-                Ok(real.mapped(&[light.inverse_table()?; 3]))
+                Ok(mapped(real, &[light.inverse_table()?; 3]))
             }
         }
     }

@@ -1,7 +1,7 @@
 use std::cmp::Reverse;
 
 use anyhow::Result;
-use wayfix_condensation::{Picture as Pixels, PositionGrid};
+use wayfix_condensation::{PositionGrid, RgbImage};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
 use super::{ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
@@ -22,7 +22,7 @@ pub(super) const JPEG_QUALITY: u8 = 85;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be encoded or drawn.
-pub fn plots(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<SvgPlot>> {
+pub fn plots(run: &ViewsRun, learned: &RgbImage, real: &RgbImage, seed: u64) -> Result<Vec<SvgPlot>> {
     Ok(vec![
         scenes(learned, real)?,
         belief_film(&run.system, seed, slowest(&run.trials))?,
@@ -104,10 +104,10 @@ pub(super) fn slowest(trials: &[ViewTrial]) -> u64 {
     slowest.map_or(0, |(index, _)| index)
 }
 
-fn scenes(learned: &Pixels, real: &Pixels) -> Result<SvgPlot> {
-    let size = (learned.width() as u32, learned.height() as u32);
-    let frame = |picture: &Pixels, caption: &str| -> Result<FilmStripFrame> {
-        let image = EncodedImage::jpeg(size.0, size.1, picture.pixels().as_flattened(), JPEG_QUALITY)?;
+fn scenes(learned: &RgbImage, real: &RgbImage) -> Result<SvgPlot> {
+    let size = learned.dimensions();
+    let frame = |picture: &RgbImage, caption: &str| -> Result<FilmStripFrame> {
+        let image = EncodedImage::jpeg(size.0, size.1, picture.as_raw(), JPEG_QUALITY)?;
         Ok(FilmStripFrame { image, caption: caption.to_owned() })
     };
     let frames = vec![frame(learned, "learned")?, frame(real, "seen")?];

@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use rayon::prelude::*;
-use wayfix_condensation::Picture;
+use wayfix_condensation::RgbImage;
 
 use super::{ViewSystem, ViewSystemConfig, ViewTrial, ViewsError, ViewsParams};
 use crate::system::Stopwatch;
@@ -26,8 +26,8 @@ pub struct ViewsRun {
 /// # Errors
 /// Returns the errors of [`ViewSystem::learn`].
 pub fn run(
-    learned: &Picture,
-    real: &Picture,
+    learned: &RgbImage,
+    real: &RgbImage,
     setup: &ViewSystemConfig,
     params: &ViewsParams,
     n_trials: u64,

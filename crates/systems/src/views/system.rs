@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
     AppearanceModel, DescriptorTable, GridMove, NavigationEnvironment, NavigationOutcome, NavigationReport,
-    Navigator, Picture, PositionGrid, SceneViews, SlipProbabilities, StateSpace, ViewGrid, ViewLocalizer,
+    Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateSpace, ViewGrid, ViewLocalizer,
 };
 
 use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams};
@@ -72,18 +72,18 @@ impl ViewSystem {
     /// Returns [`ViewsError::Sizes`], [`ViewsError::NoContrast`], [`ViewsError::TooManyStates`], or [`ViewsError::Condensation`] if no view fits
     /// into the scene or a parameter is out of range.
     pub fn learn(
-        learned: &Picture,
-        real: &Picture,
+        learned: &RgbImage,
+        real: &RgbImage,
         setup: &ViewSystemConfig,
         params: &ViewsParams,
     ) -> Result<Self, ViewsError> {
-        let size = |picture: &Picture| (picture.width(), picture.height());
+        let size = |picture: &RgbImage| (picture.width() as usize, picture.height() as usize);
         if size(learned) != size(real) {
             return Err(ViewsError::Sizes { learned: size(learned), real: size(real) });
         }
         for (which, picture) in [("learned scene", learned), ("real scene", real)] {
-            let first = picture.pixels()[0];
-            if picture.pixels().iter().all(|pixel| *pixel == first) {
+            let first = picture.pixels().next();
+            if picture.pixels().all(|pixel| Some(pixel) == first) {
                 return Err(ViewsError::NoContrast { which });
             }
         }

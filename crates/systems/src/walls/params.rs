@@ -9,8 +9,11 @@ use wayfix_slam_ekf::{
     NearestNeighbour, NearestNeighbourParams, OdometryMotion, SlamError, SlamParams, WallSensor,
 };
 
-use crate::settings::number;
-use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
+use crate::{
+    settings::{number, over_defaults},
+    slam::{AssociationRule, increment_numbers},
+    system::VELOCITY_HOLD,
+};
 
 /// Everything that can be set for EKF-SLAM with walls.
 ///
@@ -183,7 +186,7 @@ impl WallSlamParams {
             self.association != AssociationRule::Known,
             "parameter association is known, but walls have no identities: use nn or jcbb"
         );
-        let Self { sensor, keyframes, odometry_noise_per_scan, increment_noise, .. } = &self;
+        let Self { sensor, keyframes, odometry_noise_per_scan, .. } = &self;
         for (name, value, (low, range)) in [
             number!(sensor.rho_sigma, POSITIVE),
             number!(sensor.alpha_sigma, POSITIVE),
@@ -197,12 +200,10 @@ impl WallSlamParams {
             number!(odometry_noise_per_scan.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
-            number!(increment_noise.translation_variance_per_meter, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_meter, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_radian, NOT_NEGATIVE),
-            number!(increment_noise.translation_variance_per_step, NOT_NEGATIVE),
-            number!(increment_noise.heading_variance_per_step, NOT_NEGATIVE),
-        ] {
+        ]
+        .into_iter()
+        .chain(increment_numbers(&self.increment_noise).map(|(name, value)| (name, value, NOT_NEGATIVE)))
+        {
             if !(low..=1e6).contains(&value) {
                 return Err(SlamError::Parameter { name, value, range }.into());
             }

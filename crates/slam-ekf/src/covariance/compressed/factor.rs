@@ -27,6 +27,8 @@ const SMALLEST_PIVOT: f64 = 1e-14;
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     #[test]
@@ -46,6 +48,6 @@ mod tests {
         let root = DMatrix::from_row_slice(2, 1, &[1e-8, 1.0]);
         let a = &root * root.transpose();
         let c = semidefinite_factor(&a);
-        assert!((&c * c.transpose() - &a).amax() < 1e-15);
+        assert_abs_diff_eq!(&c * c.transpose(), &a, epsilon = 1e-15);
     }
 }

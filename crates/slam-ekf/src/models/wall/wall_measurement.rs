@@ -66,6 +66,8 @@ impl Manifold for WallMeasurement {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     #[test]
@@ -78,7 +80,7 @@ mod tests {
         let sensor = Pose2::new(0.4, -1.2, 2.0);
         let carried = seen.transformed(&sensor);
         for end in carried.ends {
-            assert!((carried.line.normal().dot(&end) - carried.line.rho).abs() < 1e-12);
+            assert_abs_diff_eq!(carried.line.normal().dot(&end), carried.line.rho, epsilon = 1e-12);
         }
         let numbers = |delta: &Vector2<f64>| seen.retract(delta).transformed(&sensor);
         let jacobian = wayfix_estimation_traits::numerical_jacobian(

@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat, ReadReport, RowProblem, RowProblemKind, image_files};
+use wayfix_sensor_log::{EncodedImage, ReadReport, RowProblem, RowProblemKind, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
@@ -221,8 +221,7 @@ fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Plac
 
 fn read_image(path: &Path) -> Result<EncodedImage, String> {
     let bytes = fs::read(path).map_err(|error| error.to_string())?;
-    let format = ImageFormat::of_bytes(&bytes).ok_or("neither PNG nor JPEG")?;
-    let image = EncodedImage::new(format, bytes);
+    let image = EncodedImage::from_bytes(bytes).ok_or("neither PNG nor JPEG")?;
     image.size().map_err(|error| error.to_string())?;
     Ok(image)
 }

@@ -1,4 +1,4 @@
-use wayfix_condensation::Picture;
+use wayfix_condensation::RgbImage;
 use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 use super::super::ViewsError;
@@ -10,9 +10,11 @@ use super::super::ViewsError;
 pub fn composed_scene_pair(
     scenery: &Scenery,
     imaging_conditions: &ImagingConditions,
-) -> Result<(Picture, Picture), ViewsError> {
+) -> Result<(RgbImage, RgbImage), ViewsError> {
     let learned = scenery.compose();
     let real = imaging_conditions.picture_of(&learned, scenery.seed)?;
-    let picture = |RgbPicture { width, height, rgb }| Picture::from_rgb(width, height, rgb);
-    Ok((picture(learned)?, picture(real)?))
+    let picture = |RgbPicture { width, height, rgb }| {
+        RgbImage::from_raw(width as u32, height as u32, rgb).expect("invariant: 3 bytes a pixel")
+    };
+    Ok((picture(learned), picture(real)))
 }

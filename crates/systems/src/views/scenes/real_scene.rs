@@ -1,4 +1,4 @@
-use wayfix_condensation::{LightChange, Picture};
+use wayfix_condensation::{LightChange, RgbImage, shifted};
 
 use super::super::ViewsError;
 
@@ -26,7 +26,7 @@ impl SceneChange {
     ///
     /// # Errors
     /// Returns [`ViewsError::Condensation`] if gain or gamma is not positive, or a number is not finite.
-    pub fn of(&self, picture: &Picture) -> Result<Picture, ViewsError> {
-        Ok(self.light.apply(picture)?.shifted(self.shift.0, self.shift.1))
+    pub fn of(&self, picture: &RgbImage) -> Result<RgbImage, ViewsError> {
+        Ok(shifted(&self.light.apply(picture)?, self.shift.0, self.shift.1))
     }
 }

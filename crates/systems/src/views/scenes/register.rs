@@ -1,5 +1,5 @@
 use rayon::prelude::*;
-use wayfix_condensation::Picture;
+use wayfix_condensation::{GrayImage, RgbImage, grey};
 
 /// Step between compared pixels, in both directions.
 const STRIDE: usize = 4;
@@ -9,19 +9,21 @@ const STRIDE: usize = 4;
 ///
 /// ```
 /// use wayfix_systems::views::mean_shift;
-/// use wayfix_condensation::{LightChange, Picture};
+/// use wayfix_condensation::{LightChange, RgbImage, shifted};
 /// let wave = |i: usize| (120.0 + 60.0 * ((i % 90) as f64 / 9.0).sin() + 40.0 * ((i / 90) as f64 / 7.0).cos()) as u8;
-/// let learned = Picture::from_rgb(90, 80, (0..90 * 80).flat_map(|i| [wave(i); 3]).collect())?;
-/// let real = LightChange { gain: 0.8, offset: 10.0, gamma: 1.0 }.apply(&learned)?.shifted(5, -3);
+/// let learned = RgbImage::from_raw(90, 80, (0..90 * 80).flat_map(|i| [wave(i); 3]).collect()).expect("3 bytes a pixel");
+/// let real = shifted(&LightChange { gain: 0.8, offset: 10.0, gamma: 1.0 }.apply(&learned)?, 5, -3);
 /// assert_eq!(mean_shift(&learned, &real, 8), (5, -3));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
-pub fn mean_shift(learned: &Picture, real: &Picture, reach: usize) -> (i32, i32) {
-    let (width, height) = (learned.width().min(real.width()), learned.height().min(real.height()));
+pub fn mean_shift(learned: &RgbImage, real: &RgbImage, reach: usize) -> (i32, i32) {
+    let (learned, real) = (grey(learned), grey(real));
+    let width = learned.width().min(real.width()) as usize;
+    let height = learned.height().min(real.height()) as usize;
     // At least half of each image side must overlap.
     let reach = |length: usize| reach.min(length / 2) as i32;
     let best_of_row = |dy: i32| {
-        let alike = |dx: i32| (correlation(learned, real, (width, height), (dx, dy)), (dx, dy));
+        let alike = |dx: i32| (correlation(&learned, &real, (width, height), (dx, dy)), (dx, dy));
         (-reach(width)..=reach(width)).map(alike).max_by(better)
     };
     let rows: Vec<i32> = (-reach(height)..=reach(height)).collect();
@@ -38,17 +40,18 @@ fn better(a: &Scored, b: &Scored) -> std::cmp::Ordering {
 }
 
 /// Pearson's correlation over the overlap; −1 if an image has no contrast.
-fn correlation(learned: &Picture, real: &Picture, size: (usize, usize), (dx, dy): (i32, i32)) -> f64 {
+fn correlation(learned: &GrayImage, real: &GrayImage, size: (usize, usize), (dx, dy): (i32, i32)) -> f64 {
     let inside = |by: i32, length: usize| {
         let (start, end) = ((-by).max(0) as usize, length - by.max(0) as usize);
         (start..end).step_by(STRIDE)
     };
+    let (learned_width, real_width) = (learned.width() as usize, real.width() as usize);
     let (mut n, mut a, mut b, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for y in inside(dy, size.1) {
-        let there = y.saturating_add_signed(dy as isize) * learned.width();
+        let there = y.saturating_add_signed(dy as isize) * learned_width;
         for x in inside(dx, size.0) {
-            let from = f64::from(learned.grey()[there + x.saturating_add_signed(dx as isize)]);
-            let to = f64::from(real.grey()[y * real.width() + x]);
+            let from = f64::from(learned.as_raw()[there + x.saturating_add_signed(dx as isize)]);
+            let to = f64::from(real.as_raw()[y * real_width + x]);
             n += 1.0;
             a += from;
             b += to;

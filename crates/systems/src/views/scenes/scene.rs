@@ -1,7 +1,7 @@
 use std::{fs, path::Path};
 
-use wayfix_condensation::Picture;
-use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_condensation::RgbImage;
+use wayfix_sensor_log::EncodedImage;
 
 use super::super::ViewsError;
 
@@ -9,7 +9,7 @@ use super::super::ViewsError;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneImage {
     /// The picture.
-    pub picture: Picture,
+    pub picture: RgbImage,
     /// Conversions that changed the image, a phrase each.
     pub remarks: Vec<&'static str>,
 }
@@ -20,9 +20,8 @@ pub struct SceneImage {
 /// Returns [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
 pub fn read_scene(path: &Path) -> Result<SceneImage, ViewsError> {
     let bytes = fs::read(path).map_err(|source| ViewsError::Read { path: path.into(), source })?;
-    let format =
-        ImageFormat::of_bytes(&bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
-    let image = EncodedImage::new(format, bytes);
+    let image =
+        EncodedImage::from_bytes(bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
     let damaged = |source| ViewsError::Image { path: path.into(), source };
     let layout = image.layout().map_err(damaged)?;
     let decoded = image.decode_rgb().map_err(damaged)?;
@@ -32,7 +31,8 @@ pub fn read_scene(path: &Path) -> Result<SceneImage, ViewsError> {
         (layout.has_alpha(), "has transparency: left out"),
     ];
     Ok(SceneImage {
-        picture: Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?,
+        picture: RgbImage::from_raw(decoded.width, decoded.height, decoded.pixels)
+            .expect("invariant: 3 bytes a pixel"),
         remarks: remarks.into_iter().filter_map(|(applies, remark)| applies.then_some(remark)).collect(),
     })
 }

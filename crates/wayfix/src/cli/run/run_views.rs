@@ -6,7 +6,7 @@ use std::{
 
 use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
-use wayfix_condensation::{ActionSelection, LightChange};
+use wayfix_condensation::{ActionSelection, LightChange, RgbImage, shifted};
 use wayfix_evaluation::terminal::{self, print, print_message};
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs};
@@ -122,7 +122,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print_message(format!(
             "note: the real camera stood {dx} pixels to the right and {dy} down of the learned one"
         ));
-        real = real.shifted(-dx, -dy);
+        real = shifted(&real, -dx, -dy);
     }
 
     let mut outputs = Outputs::open("views", &arguments.common)?;
@@ -163,7 +163,7 @@ impl Arguments {
 }
 
 /// Reads an image and prints conversions that changed it.
-fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
+fn read(path: &Path) -> Result<RgbImage> {
     let scene = views::read_scene(path)?;
     for remark in scene.remarks {
         print_message(format!("note: {} {remark}", path.display()));

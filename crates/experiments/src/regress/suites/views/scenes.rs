@@ -1,5 +1,5 @@
 use anyhow::Result;
-use wayfix_condensation::Picture;
+use wayfix_condensation::{RgbImage, shifted};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
 use super::settings::{ImagingConditionsKind, Settings};
@@ -8,8 +8,8 @@ use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChang
 
 /// The learned scene and the real one, and their views.
 pub(super) struct Scenes {
-    pub(super) learned: Picture,
-    pub(super) real: Picture,
+    pub(super) learned: RgbImage,
+    pub(super) real: RgbImage,
     view: usize,
     step: usize,
 }
@@ -24,7 +24,7 @@ impl Scenes {
                 let learned = views::read_scene(&path.with_file_name(file))?.picture;
                 let (dx, dy) =
                     settings.register.map_or((0, 0), |reach| views::mean_shift(&learned, &scene, reach));
-                (learned, scene.shifted(-dx, -dy))
+                (learned, shifted(&scene, -dx, -dy))
             }
             None => {
                 let real = SceneChange::default().of(&scene)?;

@@ -1,0 +1,50 @@
+use nalgebra::{Matrix2, Matrix3};
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::CovarianceEllipse;
+use wayfix_sensor_log::{DrawingShape, LogError, Stamp, ViewerDrawing, topics};
+
+use super::EstimateWriter;
+
+/// Ellipses are drawn at two standard deviations.
+const SIGMAS: f64 = 2.0;
+const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
+
+/// Writes the estimated pose of the robot, as a pose and as the place of its frame.
+pub(crate) fn write_pose(
+    writer: &mut EstimateWriter,
+    stamp: Stamp,
+    pose: &Pose2<f64>,
+) -> Result<(), LogError> {
+    writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)?;
+    writer.frame_transform("/tf", stamp, topics::WORLD_FRAME, topics::BODY_FRAME, pose)
+}
+
+/// As [`write_pose`], with the ellipse of its position; `covariance` is in the body frame.
+pub(crate) fn write_robot(
+    writer: &mut EstimateWriter,
+    stamp: Stamp,
+    pose: &Pose2<f64>,
+    covariance: &Matrix3<f64>,
+) -> Result<(), LogError> {
+    write_pose(writer, stamp, pose)?;
+    let rotation = pose.rotation_matrix();
+    let covariance = rotation * covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
+    let robot = ellipse("robot".to_owned(), ROBOT_COLOR, [pose.x(), pose.y()], covariance);
+    writer.scene_update("/estimate/robot", stamp, topics::WORLD_FRAME, robot.as_slice())
+}
+
+/// Nothing while the covariance is singular (a start pose known exactly).
+pub(crate) fn ellipse(
+    id: String,
+    color: [f64; 4],
+    center: [f64; 2],
+    covariance: Matrix2<f64>,
+) -> Option<ViewerDrawing> {
+    let ellipse = CovarianceEllipse::at_sigmas(&covariance, SIGMAS).ok()?;
+    let semi_axes = [ellipse.semi_major, ellipse.semi_minor];
+    Some(ViewerDrawing {
+        id,
+        color,
+        shape: DrawingShape::Ellipse { center, semi_axes, angle: ellipse.angle },
+    })
+}
