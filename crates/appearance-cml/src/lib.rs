@@ -1,4 +1,4 @@
-//! Appearance maps: a robot that learns what places look like, forgets what they look like no longer, and localizes in what it has learned.
+//! Appearance maps: localization by omnidirectional views, in a map that learns new views and forgets old ones.
 //!
 //! Gross, Koenig & Müller, *Omniview-based Concurrent Map Building and Localization using Adaptive Appearance Maps*. The crate opens no
 //! files: views are buffers of pixels, maps are bytes.
@@ -15,15 +15,14 @@ mod views;
 
 pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
-pub(crate) use fusion::update_heading;
-pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
-pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
-    Start, UpdateOutcome, smooth,
+pub use fusion::{
+    Combination, FusionParams, PoseLikelihood, PoseSource, PositionFix, UniformComponent, Weighting, combine, fuse,
 };
-pub(crate) use model::HeadingMeasurement;
+pub use localizer::{
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,
+};
 pub use model::{
-    AppearanceMap, Forgetting, ForgettingParams, ForgettingUncertainty, LagSample, MapParams, MapUpdate,
+    AppearanceMap, Forgetting, ForgettingUncertainty, LagSample, MapParams, MapUpdate,
     PlaceComponent, PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
@@ -31,10 +30,11 @@ pub use search::{
     ReferenceSearch, SearchCost, ViewDifference,
 };
 pub use state::{
-    MixtureReductionParams, OdometryNoise, PoseHypothesis, UnimodalParams, propagate, separation_squared,
+    MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared,
     simplify, unimodal,
 };
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
     PanoramaTable, RingOrder, Tone, TurnSense,
 };
+pub use wayfix_integrity::RelocalizationParams;

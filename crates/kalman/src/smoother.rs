@@ -107,6 +107,15 @@ where
         Ok(innovation)
     }
 
+    /// Replaces the filtered estimate of the last state by that of another filter, such as a component of a mixture.
+    ///
+    /// # Errors
+    /// Returns an error if the covariance is not positive definite beyond rounding; the smoother is then unchanged.
+    pub fn set_filtered(&mut self, filtered: Gaussian<X>) -> Result<(), KalmanError> {
+        self.current = Extended.belief_from(&filtered)?;
+        Ok(())
+    }
+
     /// All states given all measurements, first to last.
     ///
     /// # Errors

@@ -19,7 +19,7 @@ impl Split {
     }
 }
 
-/// How finely the share is searched; the determinant is flat at its minimum, so that this costs well under a percent of it.
+/// Resolution of the search for the share. The determinant is flat at its minimum, so this costs less than a percent of it.
 const STEPS: u32 = 24;
 
 /// Split covariance intersection of two, by the share $`ω`$ of least determinant.

@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use crate::{Descriptor, LagSample, ViewScale};
 
-/// The last few views along the way, between which the scale of distances is measured.
+/// Learns the scale of view differences from the last few views along the path.
 #[derive(Clone, Debug)]
 pub(super) struct ScaleLearner<D> {
     recent: VecDeque<(f64, D)>,
@@ -15,18 +15,16 @@ impl<D> Default for ScaleLearner<D> {
     }
 }
 
-/// Views that the second lag spans.
+/// Number of views that the second lag spans: with the first, two points of the variogram well below its sill.
 const LAG: usize = 4;
-/// A shorter way between two views counts as standing still, m.
-const LEAST_WAY: f64 = 0.005;
 
 impl<D: Descriptor + Clone> ScaleLearner<D> {
-    /// Measures a view that was taken `way` metres after the last one.
-    pub(super) fn observe(&mut self, way: f64, view: &D, scale: &mut ViewScale) {
-        if way < LEAST_WAY && !self.recent.is_empty() {
+    /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest tells nothing of the scale.
+    pub(super) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewScale) {
+        if distance <= scale.step() / 2.0 && !self.recent.is_empty() {
             return;
         }
-        self.odometer += way;
+        self.odometer += distance;
         let lag = |&(odometer, ref earlier): &(f64, D)| LagSample {
             lag: self.odometer - odometer,
             distance: view.compare(earlier).distance,
@@ -41,7 +39,7 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
         self.recent.push_back((self.odometer, view.clone()));
     }
 
-    /// What comes next is not connected with what was before.
+    /// The next view is not connected with the previous ones.
     pub(super) fn interrupt(&mut self) {
         self.recent.clear();
     }

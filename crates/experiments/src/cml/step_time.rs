@@ -98,11 +98,15 @@ fn between(trip: &Trip) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)
 
 /// Seconds of searches without a belief.
 fn search_s(map: &PanoramaMap, trip: &Trip, params: &LocalizerParams) -> Vec<f64> {
-    let limit = map.match_limit(&params.map);
     let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
     let search = |view: &PanoramaDescriptor| {
         let stopwatch = Stopwatch::start();
-        black_box(map.place_matches_anywhere(view, &[], params.most_matches, limit));
+        black_box(map.place_matches(
+            view,
+            &[],
+            params.simplify.max_components,
+            (&params.map, params.fusion.gate),
+        ));
         stopwatch.elapsed().as_secs_f64()
     };
     views.map(search).collect()
