@@ -16,22 +16,22 @@ mod views;
 pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
 pub use fusion::{
-    Combination, FusionParams, PoseLikelihood, PoseSource, PositionFix, UniformComponent, Weighting, combine, fuse,
+    Combination, FusionParams, PoseLikelihood, PoseSource, PositionFix, UniformComponent, Weighting, combine,
+    fuse,
 };
 pub use localizer::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,
 };
 pub use model::{
-    AppearanceMap, Forgetting, ForgettingUncertainty, LagSample, MapParams, MapUpdate,
-    PlaceComponent, PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
+    AppearanceMap, Forgetting, ForgettingUncertainty, LagSample, MapParams, MapUpdate, PlaceComponent,
+    PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, BoundTable, Bounded, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
     ReferenceSearch, SearchCost, ViewDifference,
 };
 pub use state::{
-    MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared,
-    simplify, unimodal,
+    MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared, simplify, unimodal,
 };
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,

@@ -5,9 +5,7 @@ mod common;
 use common::{Field, FieldView, beside, between, drifting, known};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_appearance_cml::{
-    AppearanceLocalizer, Event, LocalizerParams, RelocalizationParams, Start,
-};
+use wayfix_appearance_cml::{AppearanceLocalizer, Event, LocalizerParams, RelocalizationParams, Start};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
 const N_SEEDS: u64 = 10;

@@ -151,7 +151,8 @@ mod tests {
         // Numerically, with the standard normal of `a` in x; y and heading at the centre give the ratio of their σ.
         let density = |x: f64| (-0.5 * (x / 3.0).powi(2)).exp() / (3.0 * std::f64::consts::TAU.sqrt());
         let peak = |x: f64| 0.5 * (-0.5 * ((x - 4.0) / 0.3).powi(2)).exp();
-        let along: f64 = (-20_000..20_000).map(|k| 1e-3 * f64::from(k)).map(|x| 1e-3 * density(x) * peak(x)).sum();
+        let along: f64 =
+            (-20_000..20_000).map(|k| 1e-3 * f64::from(k)).map(|x| 1e-3 * density(x) * peak(x)).sum();
         let across = 0.3 / (3.0_f64.powi(2) + 0.3_f64.powi(2)).sqrt() * 0.1 / (2.0 * 0.01_f64).sqrt();
         assert!((weight / (along * across) - 1.0).abs() < 1e-6, "{weight} and {}", along * across);
     }

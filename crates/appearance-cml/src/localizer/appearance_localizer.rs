@@ -4,9 +4,8 @@ use wayfix_gaussian_core::{Gaussian, Mixture};
 use super::belief::Belief;
 use super::pose_history::PoseHistory;
 use super::relocalize::KidnapTest;
-use super::scale_learner::ScaleLearner;
 use super::{Event, Learning, LocalizerParams, Start, UpdateOutcome};
-use crate::model::HEADING_SIGMA;
+use crate::model::{HEADING_SIGMA, ScaleLearner};
 use crate::state::Motion;
 use crate::{
     AppearanceError, AppearanceMap, Descriptor, LinearSearch, OdometryNoise, PoseSource, ReferenceId,
@@ -213,7 +212,8 @@ where
     /// # Errors
     /// Returns an error if the pose is invalid or no reference number is left; the map is then unchanged.
     pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
-        let distance = self.taught_last.map_or(0.0, |last| (pose.mean().translation - last.translation).norm());
+        let distance =
+            self.taught_last.map_or(0.0, |last| (pose.mean().translation - last.translation).norm());
         let id = self.map.teach(view.clone(), pose)?;
         self.taught_last = Some(*pose.mean());
         self.n_views = self.n_views.wrapping_add(1);

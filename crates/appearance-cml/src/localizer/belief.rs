@@ -3,8 +3,8 @@ use wayfix_gaussian_core::{Gaussian, Mixture};
 
 use super::{LocalizerParams, Start};
 use crate::{
-    AppearanceError, PoseHypothesis, PoseLikelihood, PoseSource, UniformComponent, Weighting, fuse, propagate,
-    simplify, unimodal,
+    AppearanceError, PoseHypothesis, PoseLikelihood, PoseSource, UniformComponent, Weighting, fuse,
+    propagate, simplify, unimodal,
 };
 
 /// $`p(x_t)`$: a Gaussian mixture and a uniform component.

@@ -1,7 +1,9 @@
 use super::belief::Belief;
 use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::model::{GROUP_SIZE, N_FAR};
-use crate::{AppearanceError, AppearanceMap, Descriptor, PoseLikelihood, ReferenceSearch, interpolate, superpose};
+use crate::{
+    AppearanceError, AppearanceMap, Descriptor, PoseLikelihood, ReferenceSearch, interpolate, superpose,
+};
 
 /// Likelihood of a view that does not match, relative to the peak of one that does: the probability that the best of the references of a wrong
 /// place is nearer to the view than those of far places.
@@ -46,7 +48,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             Observation::Interpolation => {
                 let components = belief.components();
                 let reaches_far = components.iter().any(|component| {
-                    self.search_radius(component, &params.map, params.fusion.gate) > self.scale().far_distance()
+                    self.search_radius(component, &params.map, params.fusion.gate)
+                        > self.scale().far_distance()
                 });
                 let is_wide = reaches_far || belief.uniform > 1.0 - params.unimodal_weight;
                 let n_anywhere = if is_wide { params.simplify.max_components } else { 0 };

@@ -9,7 +9,6 @@ mod outcome;
 mod params;
 mod pose_history;
 mod relocalize;
-mod scale_learner;
 mod start;
 
 pub use appearance_localizer::AppearanceLocalizer;

@@ -112,8 +112,6 @@ impl LocalizerParams {
         Self {
             observation: Observation::Superposition,
             fusion: FusionParams::as_published(),
-            // A component that was one of 30 equal ones is removed after three views without support.
-            simplify: MixtureReductionParams { min_weight: 0.005, ..MixtureReductionParams::default() },
             recovery: Recovery::Off,
             map: MapParams::as_published(),
             reject_outliers: false,

@@ -83,7 +83,8 @@ impl KidnapTest {
 
     /// A search is due if the view does not recognize the present hypothesis, and this has probably been wrong before or cannot be tested.
     fn is_search_due(&self, test: Option<PlaceTest>, radius: f64) -> bool {
-        let is_doubtful = test.is_none_or(|test| !test.is_recognized && self.change.probability() > 1.0 / 2.0);
+        let is_doubtful =
+            test.is_none_or(|test| !test.is_recognized && self.change.probability() > 1.0 / 2.0);
         is_doubtful && self.unsearched >= radius
     }
 }

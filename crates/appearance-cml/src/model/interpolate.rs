@@ -107,11 +107,7 @@ fn pose_of(
 }
 
 /// The heading of a group, and the variance of the comparison.
-fn turn_of(
-    group: &[&PlaceMatch],
-    shares: &[f64],
-    scale: &ViewScale,
-) -> Result<(f64, f64), AppearanceError> {
+fn turn_of(group: &[&PlaceMatch], shares: &[f64], scale: &ViewScale) -> Result<(f64, f64), AppearanceError> {
     let headings: Vec<Angle<f64>> = group.iter().map(|s| s.gaussian.mean().rotation).collect();
     let moments = CircularMoments::from_weighted(&headings, shares)?;
     // Headings of a group lie within a fraction of a turn, so that they never cancel.

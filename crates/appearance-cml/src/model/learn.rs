@@ -7,9 +7,7 @@ use super::comparing::place_match::turned;
 use super::merge::merge_places;
 use super::residual::Residual;
 use super::weigh::{weight_when_missed, weight_when_seen};
-use super::{
-    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, interpolate,
-};
+use super::{AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, interpolate};
 use crate::{
     AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
 };

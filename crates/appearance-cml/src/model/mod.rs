@@ -15,6 +15,7 @@ mod weigh;
 
 pub use appearance_map::AppearanceMap;
 pub use comparing::place_match::PlaceMatch;
+pub(crate) use comparing::scale_learner::ScaleLearner;
 pub use comparing::similarity::similarity;
 pub use comparing::view_scale::{LagSample, ViewScale};
 pub(crate) use far::{N_FAR, PlaceTest};

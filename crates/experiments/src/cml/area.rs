@@ -31,9 +31,8 @@ pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
     metrics.extend(mean_of("error_max_m", "m", &seeds, |lapped| largest(&lapped.course.errors)));
-    metrics.extend(mean_of("error_mean_m_as_published", "m", &seeds, |lapped| {
-        mean(&lapped.published.errors)
-    }));
+    metrics
+        .extend(mean_of("error_mean_m_as_published", "m", &seeds, |lapped| mean(&lapped.published.errors)));
     metrics.extend(mean_of("dead_reckoning_error_mean_m", "m", &seeds, |lapped| {
         mean(&dead_reckoning_errors(&lapped.trip))
     }));

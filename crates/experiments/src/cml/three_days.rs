@@ -9,8 +9,8 @@ use super::worlds::{Draw, robot, tour};
 use super::{Setup, Trip, TripResult, localize_trip};
 use wayfix_evaluation::plot::MapPlot;
 use wayfix_evaluation::report::{Metric, Run};
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 use wayfix_systems::cml::histogram;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 const N_DAYS: usize = 3;
 /// Share of the shelf sections that are rearranged over night.
@@ -94,8 +94,7 @@ fn one(setup: &Setup, seed: u64) -> Result<Vec<Day>> {
         let trip = tour(&building, setup.length_m, params, (seed, day))?;
         let mut courses = Vec::new();
         for (params, map) in &mut localizers {
-            let mut today =
-                PanoramaLocalizer::with_map(*params, std::mem::take(map), known_start(&trip)?)?;
+            let mut today = PanoramaLocalizer::with_map(*params, std::mem::take(map), known_start(&trip)?)?;
             courses.push(localize_trip(&mut today, &trip)?);
             *map = today.into_map();
         }

@@ -1,14 +1,16 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 44] = [
-    ("active", "active_forgetting"),
+const RENAMED: [(&str, &str); 48] = [
+    ("active", "forgetting_rate"),
+    ("active_forgetting", "forgetting_rate"),
     ("alike_share", "color_agreement_share"),
     ("bearing", "bearing_sigma"),
     ("bearing_per_extent", "bearing_sigma_per_extent"),
     ("clutter", "mean_clutter"),
     ("command_erosion", "turn_command_shortening"),
     ("contradiction", "restart_nis"),
+    ("corroboration", "reject_outliers"),
     ("detection", "detection_probability"),
     ("disagreement", "odometry_noise_per_scan"),
     ("doubt_below", "no_evidence_below"),
@@ -41,9 +43,11 @@ const RENAMED: [(&str, &str); 44] = [
     ("reach", "search_radius"),
     ("reach", "sensor_range"),
     ("reach_m", "max_range_m"),
+    ("relocation", "relocalization"),
     ("stays", "stay_probability"),
     ("strays", "other_action_probability"),
     ("taught", "taught_pose"),
+    ("unimodal", "unimodal_weight"),
     ("visit", "imaging_conditions"),
     ("with_things", "with_unmapped_objects"),
 ];
@@ -52,6 +56,25 @@ const RENAMED: [(&str, &str); 44] = [
 pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let new: Vec<&str> = RENAMED.iter().filter(|(name, _)| *name == old).map(|(_, new)| *new).collect();
     allowed.into_iter().find(|name| new.contains(name))
+}
+
+/// Old name, a name beside which it stood, and what replaces it.
+const REPLACED: [(&str, &str, &str); 9] = [
+    ("delay", "unimodal_weight", "a view waits until the robot is a match radius away"),
+    ("insertion", "match_share", "a view becomes a reference beyond the distance of successive views"),
+    ("longest_wait", "unimodal_weight", "`relocalization.kept_distance` bounds the wait"),
+    ("match_limit", "match_share", "`match_share` sets it"),
+    ("memory", "unimodal_weight", "references are not moved any more"),
+    ("merge_distance", "match_share", "`fusion.gate` holds for places too"),
+    ("most_matches", "unimodal_weight", "`simplify.max_components` holds for matches too"),
+    ("patience", "unimodal_weight", "`relocalization.kept_distance` bounds the wait"),
+    ("place_gate", "match_share", "`fusion.gate` holds for places too"),
+];
+
+/// What replaces `old`, which stood among the allowed names.
+pub(super) fn replacement<'a>(old: &str, mut allowed: impl Iterator<Item = &'a str>) -> Option<&'static str> {
+    let (_, beside, what) = REPLACED.iter().find(|(name, ..)| *name == old)?;
+    allowed.any(|name| name == *beside).then_some(*what)
 }
 
 #[cfg(test)]
@@ -64,5 +87,12 @@ mod tests {
         assert_eq!(present_name("reach", allowed.into_iter()), Some("sensor_range"));
         assert_eq!(present_name("reach", ["step"].into_iter()), None);
         assert_eq!(present_name("range_sigmas", allowed.into_iter()), None);
+    }
+
+    #[test]
+    fn replaced_name_is_told_what_replaces_it() {
+        let of = |old, beside| replacement(old, std::iter::once(beside));
+        assert_eq!(of("place_gate", "match_share"), Some("`fusion.gate` holds for places too"));
+        assert_eq!(of("delay", "range_sigma"), None);
     }
 }

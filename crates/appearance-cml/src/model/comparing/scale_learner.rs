@@ -1,10 +1,11 @@
 use std::collections::VecDeque;
 
+use super::super::interpolate::GROUP_SIZE;
 use crate::{Descriptor, LagSample, ViewScale};
 
-/// Learns the scale of view differences from the last few views along the path.
+/// Learns the scale of view differences along the path: over one step, and over the radius of a group of places.
 #[derive(Clone, Debug)]
-pub(super) struct ScaleLearner<D> {
+pub(crate) struct ScaleLearner<D> {
     recent: VecDeque<(f64, D)>,
     odometer: f64,
 }
@@ -15,12 +16,9 @@ impl<D> Default for ScaleLearner<D> {
     }
 }
 
-/// Number of views that the second lag spans: with the first, two points of the variogram well below its sill.
-const LAG: usize = 4;
-
 impl<D: Descriptor + Clone> ScaleLearner<D> {
     /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest tells nothing of the scale.
-    pub(super) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewScale) {
+    pub(crate) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewScale) {
         if distance <= scale.step() / 2.0 && !self.recent.is_empty() {
             return;
         }
@@ -32,7 +30,7 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
         if let Some(sample) = self.recent.back().map(lag) {
             scale.add_near(sample);
         }
-        let ahead = (self.recent.len() == LAG).then(|| self.recent.pop_front()).flatten();
+        let ahead = (self.recent.len() == GROUP_SIZE).then(|| self.recent.pop_front()).flatten();
         if let Some(sample) = ahead.as_ref().map(lag) {
             scale.add_ahead(sample);
         }
@@ -40,7 +38,7 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
     }
 
     /// The next view is not connected with the previous ones.
-    pub(super) fn interrupt(&mut self) {
+    pub(crate) fn interrupt(&mut self) {
         self.recent.clear();
     }
 }
