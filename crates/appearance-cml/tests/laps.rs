@@ -6,7 +6,7 @@ use common::{Field, FieldView, between, drifting, known, lap};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMap, Event, Learning, LocalizerParams, Start};
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
@@ -130,4 +130,28 @@ fn person_who_passes_by_makes_no_reference() {
     let (with, without) = (references(true), references(false));
     // Of 20 occluded views at most 3 still wait at the end.
     assert!(without >= with + 15, "{with} references made with the check, {without} without");
+}
+
+#[test]
+fn turning_on_the_spot_is_corrected_by_views() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let field = Field::new(&mut rng);
+    let map = taught(&field, &mut rng);
+    let params = LocalizerParams { learning: STATIC, ..LocalizerParams::default() };
+    let mut localizer =
+        Localizer::with_map(params, map, Start::Known(known(way()[0]))).expect("valid defaults");
+    drive(&mut localizer, &field, (0, 20), &mut rng);
+    let mut pose = way()[20];
+    let mut largest: f64 = 0.0;
+    for _ in 0..400 {
+        localizer.update(field.view(&pose, &mut rng)).expect("a good view");
+        let estimate = localizer.estimate().expect("known").mean();
+        largest = largest.max(wrap_angle(estimate.heading() - pose.heading()).abs());
+        let turn = std::f64::consts::TAU / 40.0;
+        pose = pose.compose(&Pose2::new(0.0, 0.0, turn));
+        // Odometry turns 1 % too far: 36° in ten turns.
+        localizer.predict(&Pose2::new(0.0, 0.0, 1.01 * turn)).expect("finite odometry");
+    }
+    // Three σ of the phase of a view.
+    assert!(largest < 0.06, "{largest} rad");
 }
