@@ -1,3 +1,5 @@
+use std::f64::consts::TAU;
+
 use wayfix_gaussian_core::Gaussian;
 
 use super::{FusionParams, PoseLikelihood, UniformComponent, Weighting, combine};
@@ -10,7 +12,8 @@ use crate::{AppearanceError, PoseHypothesis, separation_squared};
 ///
 /// $`w_{ab} = w_a w_b \sqrt{|C_b| / |C_a + C_b|}\, e^{-d^2/2}`$, $`w_{a0} = w_a m`$.
 ///
-/// The uniform component gives $`w_u w_b (2π)^{3/2} |C_b|^{1/2} / V`$ and $`w_u m`$. With [`Weighting::Support`] components are fused in pairs
+/// The uniform component gives $`w_u w_b (2π)^{3/2} |C_b|^{1/2} / V`$ and $`w_u m`$; a peak wider than the map leaves it uniform,
+/// with the share $`\sqrt{2π} σ_θ / 2π`$ of the headings. With [`Weighting::Support`] components are fused in pairs
 /// or copied, and nothing is uniform any more. [Gross et al. 2005, Eqs. 2-8]
 ///
 /// ```
@@ -68,9 +71,16 @@ pub fn fuse(
         }
         Weighting::Evidence => {
             fused.extend(predicted.iter().map(|a| copied(a, observed.floor)));
-            let anew = |b: &PoseHypothesis| copied(b, uniform.weight * uniform.share_of(&b.gaussian));
-            fused.extend(observed.peaks.iter().map(anew));
-            Ok((fused, UniformComponent { weight: uniform.weight * observed.floor, ..uniform }))
+            let mut kept = observed.floor;
+            for b in &observed.peaks {
+                let share = uniform.share_of(&b.gaussian);
+                if share < 1.0 {
+                    fused.push(copied(b, uniform.weight * share));
+                } else {
+                    kept += b.weight * (b.gaussian.sigmas().z / TAU.sqrt()).min(1.0);
+                }
+            }
+            Ok((fused, UniformComponent { weight: uniform.weight * kept, ..uniform }))
         }
     }
 }
@@ -183,6 +193,11 @@ mod tests {
         let volume = (2.0 * std::f64::consts::PI).powf(1.5) * (0.3 * 0.3 * 0.1);
         assert!((places[0].weight - 0.5 * volume / 1000.0).abs() < 1e-12);
         assert_eq!(left.weight, FLOOR);
+        // A peak wider than the map tells no place.
+        let wide = PoseLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
+        let (places, left) = fuse(&[], uniform, &wide, &FusionParams::default()).unwrap();
+        let headings = 0.1 / std::f64::consts::TAU.sqrt();
+        assert!(places.is_empty() && (left.weight - 0.5 * headings - FLOOR).abs() < 1e-12);
         // A source of probability 0.9 takes 0.9 of it, whatever the extent of the map.
         let source = PoseLikelihood::of_probabilities(vec![PoseHypothesis { weight: 0.9, ..peak }], &uniform);
         let (places, left) = fuse(&[], uniform, &source, &FusionParams::default()).unwrap();

@@ -23,11 +23,11 @@ impl Split {
 ///
 /// $`C^{-1} = (C_{a,s}/ω + C_{a,i})^{-1} + (C_{b,s}/(1-ω) + C_{b,i})^{-1}`$. [Julier & Uhlmann 2001]
 /// The information is concave in $`ω`$, so that the determinant has one minimum. The interval around it shrinks by a quarter in each
-/// iteration; after as many iterations as there are decimal digits it is 1 % wide.
+/// iteration. After twice as many iterations as a number has decimal digits its width is 2e-4.
 pub(super) fn intersect(a: &Split, b: &Split) -> Result<(Vector3<f64>, Matrix3<f64>), GaussianError> {
     let at = |share: f64| fused((a.mean, a.widened(share)), (b.mean, b.widened(1.0 - share)));
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..f64::DIGITS {
+    for _ in 0..2 * f64::DIGITS {
         let middle = (low + high) / 2.0;
         let (left, right) = ((low + middle) / 2.0, (middle + high) / 2.0);
         if at(left)?.1.determinant() < at(right)?.1.determinant() {

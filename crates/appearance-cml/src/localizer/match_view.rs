@@ -1,8 +1,12 @@
+use nalgebra::{Matrix3, Vector3};
+use wayfix_gaussian_core::Gaussian;
+
 use super::belief::Belief;
 use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::model::{GROUP_SIZE, N_FAR};
 use crate::{
-    AppearanceError, AppearanceMap, Descriptor, PoseLikelihood, ReferenceSearch, interpolate, superpose,
+    AppearanceError, AppearanceMap, Descriptor, PoseHypothesis, PoseLikelihood, ReferenceSearch, interpolate,
+    superpose,
 };
 
 /// Likelihood of a view that does not match, relative to the peak of one that does: the probability that the best of the references of a wrong
@@ -16,13 +20,17 @@ pub(super) struct ViewMatch {
 }
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
-    /// The likelihood of a view, which is independent of the previous one only if the robot has moved.
+    /// The likelihood of a view. A robot that has only turned since the last one sees nothing new of its position, but compares other sectors
+    /// for its heading: the position of the peaks becomes uncertain, and the rest independent, as the distance is short against half a step.
     pub(super) fn match_view(&self, view: &D) -> Result<ViewMatch, AppearanceError> {
         let mut matched = self.map.match_view(view, &self.belief, &self.params)?;
-        let half_step = self.map.scale().step() / 2.0;
-        if self.has_seen && self.motion.distance() < half_step {
-            for peak in &mut matched.likelihood.peaks {
-                peak.independent *= self.motion.distance() / half_step;
+        let moved = (2.0 * self.motion.distance() / self.map.scale().step()).max(f64::EPSILON.sqrt());
+        if self.has_seen && moved < 1.0 {
+            let wider = Matrix3::from_diagonal(&Vector3::new(1.0 / moved, 1.0 / moved, 1.0));
+            for PoseHypothesis { gaussian, independent, .. } in &mut matched.likelihood.peaks {
+                let covariance = wider * gaussian.covariance() * wider;
+                *gaussian = Gaussian::from_parts_unchecked(*gaussian.mean(), covariance);
+                *independent = 1.0 - moved * (1.0 - *independent);
             }
         }
         Ok(matched)

@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
-use wayfix_integrity::{ChangeTest, Proposal, Relocalization};
+use wayfix_integrity::{Proposal, Relocalization};
 
 use super::belief::Belief;
 use super::{AppearanceLocalizer, LocalizerParams, Recovery};
@@ -11,15 +11,15 @@ use crate::{AppearanceError, AppearanceMap, Descriptor, ReferenceSearch, separat
 ///
 /// A view *recognizes* a hypothesis if a reference there is nearer to it than all of [`N_FAR`] references of far places. At a wrong hypothesis
 /// $`k`$ references do so with probability $`k/(k+n)`$, by exchangeability. At the right one the rate is the mean of a Beta posterior over the views so
-/// far, from the uniform prior; a view counts with the probability that the robot has not been moved. The log-likelihood ratio is that of
+/// far, from the uniform prior; a view counts with the probability that the robot is at no alternative. The log-likelihood ratio is that of
 /// these two Bernoulli distributions, 0 where the map knows nothing.
+///
+/// A view that does not recognize the present hypothesis starts a search of the whole map, unless the last one was within the match radius.
 ///
 /// Views nearer to one another than the match radius show the same things. Each counts as the share of an independent one that the
 /// distance is of the match radius.
 #[derive(Clone, Debug)]
 pub(super) struct KidnapTest {
-    /// Of the present hypothesis alone: when to search.
-    change: ChangeTest,
     alternatives: Relocalization<Belief>,
     recognized: f64,
     missed: f64,
@@ -30,11 +30,10 @@ pub(super) struct KidnapTest {
 impl KidnapTest {
     pub(super) fn new(params: &LocalizerParams) -> Result<Self, AppearanceError> {
         Ok(Self {
-            change: ChangeTest::new(params.relocalization)?,
             alternatives: Relocalization::new(params.relocalization)?,
             recognized: 1.0,
             missed: 1.0,
-            unsearched: f64::MAX,
+            unsearched: f64::INFINITY,
         })
     }
 
@@ -62,30 +61,14 @@ impl KidnapTest {
         self.recognized / (self.recognized + self.missed)
     }
 
-    /// Takes the test of the present hypothesis and its log-likelihood ratio.
-    fn observe(
-        &mut self,
-        (test, log_ratio): (Option<PlaceTest>, f64),
-        distance: f64,
-        independence: f64,
-    ) -> Result<(), AppearanceError> {
-        self.unsearched = (self.unsearched + distance).min(f64::MAX);
-        self.alternatives.drive(distance)?;
-        self.change.observe(distance, -log_ratio)?;
-        let counted = independence * (1.0 - self.change.probability());
+    /// Takes the test of the present hypothesis, as a share of an independent view.
+    fn observe(&mut self, test: Option<PlaceTest>, independence: f64) {
+        let counted = independence * (1.0 - self.probability());
         match test {
             Some(test) if test.is_recognized => self.recognized += counted,
             Some(_) => self.missed += counted,
             None => {}
         }
-        Ok(())
-    }
-
-    /// A search is due if the view does not recognize the present hypothesis, and this has probably been wrong before or cannot be tested.
-    fn is_search_due(&self, test: Option<PlaceTest>, radius: f64) -> bool {
-        let is_doubtful =
-            test.is_none_or(|test| !test.is_recognized && self.change.probability() > 1.0 / 2.0);
-        is_doubtful && self.unsearched >= radius
     }
 }
 
@@ -116,7 +99,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
         let ratio = |test| independence * log_ratio(test, rate);
 
         let (kidnap, of_present) = (&mut self.kidnap, test(Some(present)));
-        kidnap.observe((of_present, ratio(of_present)), distance, independence)?;
+        kidnap.unsearched += distance;
+        kidnap.alternatives.drive(distance)?;
         kidnap.alternatives.observe(ratio(of_present), |alternative| ratio(test(alternative.heaviest())))?;
         for alternative in kidnap.alternatives.alternatives_mut() {
             // A hypothesis that becomes singular stays as it is and loses.
@@ -124,7 +108,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
                 alternative.hypothesis = seen;
             }
         }
-        if kidnap.is_search_due(of_present, radius) {
+        kidnap.observe(of_present, independence);
+        let is_recognized = of_present.is_some_and(|test| test.is_recognized);
+        if !is_recognized && kidnap.unsearched >= radius {
             let prior = (radius * radius / map.area()).min(1.0);
             let mut places = search(map, view, params).unwrap_or_default();
             places.retain(|place| is_new(place, present, kidnap, map, params));
@@ -135,11 +121,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
             kidnap.alternatives.propose(proposals)?;
             kidnap.unsearched = 0.0;
         }
-        let is_moved = kidnap.alternatives.decide(belief);
-        if is_moved {
-            kidnap.change.reset();
-        }
-        Ok(is_moved)
+        Ok(kidnap.alternatives.decide(belief))
     }
 }
 
