@@ -1,4 +1,5 @@
 use wayfix_gaussian_core::GaussianError;
+use wayfix_integrity::IntegrityError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,6 +78,9 @@ pub enum AppearanceMapError {
     /// A distribution over poses is invalid.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
+    /// A parameter of the relocalization, or a measurement of its test, is invalid.
+    #[error(transparent)]
+    Integrity(#[from] IntegrityError),
     /// Something is NaN or infinite.
     #[error("{what} is not finite")]
     NotFinite {

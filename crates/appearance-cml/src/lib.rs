@@ -1,4 +1,4 @@
-//! Appearance maps: a robot that learns what places look like, forgets what they look like no longer, and localizes in what it has learned.
+//! Appearance maps: localization by omnidirectional views, in a map that learns new views and forgets old ones.
 //!
 //! Gross, Koenig & Müller, *Omniview-based Concurrent Map Building and Localization using Adaptive Appearance Maps*. The crate opens no
 //! files: views are buffers of pixels, maps are bytes.
@@ -17,29 +17,27 @@ pub use archive::{
     MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
 };
 pub use error::AppearanceMapError;
-pub(crate) use fusion::update_heading;
 pub use fusion::{
-    FusionParams, GaussianFusionRule, MixtureWeighting, PoseSource, PositionFix, combine, fuse,
+    FusionParams, GaussianFusionRule, MixtureWeighting, PoseLikelihood, PoseSource, PositionFix,
+    UniformComponent, combine, fuse,
 };
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
-    Start, UpdateOutcome, smooth,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,
 };
-pub(crate) use model::HeadingMeasurement;
 pub use model::{
-    AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingParams, ForgettingUncertainty, MapUpdate,
-    PlaceComponent, PlaceMatch, PlaceUpdateRule, ReferenceView, ViewDifferenceSample, ViewDistanceScale,
-    interpolate, similarity, superpose,
+    AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, MapUpdate, PlaceComponent,
+    PlaceMatch, PlaceUpdateRule, ReferenceView, ViewDifferenceSample, ViewDistanceScale, interpolate,
+    similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance, NoBoundTable, ReferenceId,
     ReferenceMatch, ReferenceSearch, SearchStatistics, ViewDifference,
 };
 pub use state::{
-    MixtureReductionParams, OdometryNoise, PoseHypothesis, UnimodalParams, propagate, separation_squared,
-    simplify, unimodal,
+    MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared, simplify, unimodal,
 };
 pub use views::{
     AzimuthDirection, BrightnessNormalization, IntensityScale, OmnidirectionalRing, Panorama,
     PanoramaBoundTable, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaQuery, RingOrientation,
 };
+pub use wayfix_integrity::RelocalizationParams;

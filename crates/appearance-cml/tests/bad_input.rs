@@ -1,4 +1,4 @@
-//! Whatever is refused leaves state and map as they were.
+//! Refused input leaves state and map unchanged.
 
 mod common;
 
@@ -86,7 +86,7 @@ fn a_fix_helps_where_nothing_is_known() {
     let mut localizer = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
     let pose = Pose2::new(3.0, 4.0, 0.0);
     let nothing = localizer.update(field.view(&pose, &mut rng)).expect("a good view");
-    assert_eq!((nothing.estimate, nothing.n_sightings), (None, 0), "no references, no idea");
+    assert_eq!((nothing.estimate, nothing.n_detections), (None, 0), "no references, no idea");
     let fix =
         PositionFix { position: Vector2::new(3.1, 4.1), covariance: Matrix2::identity() * 0.04, weight: 0.9 };
     let outcome = localizer.update_with(field.view(&pose, &mut rng), &[&fix]).expect("a good fix");
@@ -95,7 +95,7 @@ fn a_fix_helps_where_nothing_is_known() {
 }
 
 #[test]
-fn a_start_or_parameters_without_meaning_are_refused() {
+fn invalid_start_or_parameters_are_refused() {
     let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
     assert!(Localizer::new(LocalizerParams::default(), Start::Known(flat)).is_err());
     let mut params = LocalizerParams::default();

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceMap, AppearanceMapParams, Descriptor, ForgettingMode, ForgettingParams, ForgettingUncertainty,
-    PlaceUpdateRule, ViewDifference, similarity,
+    AppearanceMap, AppearanceMapParams, Descriptor, ForgettingMode, ForgettingUncertainty, PlaceUpdateRule,
+    ViewDifference, ViewDifferenceSample, similarity,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -24,26 +24,32 @@ fn at(x: f64) -> Gaussian<Pose2<f64>> {
     Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(SIGMA, SIGMA, SIGMA)).expect("positive")
 }
 
-/// The printed rules with E^max = 1 and round numbers.
-fn printed() -> AppearanceMapParams {
+/// Gate of Eqs. 12 and 15-17.
+const GATE: f64 = 7.8;
+
+/// The published rules with round numbers.
+fn published() -> AppearanceMapParams {
+    // A quarter of the way from a nugget of 0 to the sill at twice the difference of successive views, both in squares: E^max = 1.
     AppearanceMapParams {
-        match_limit: Some(1.0),
+        match_limit_fraction: 0.25,
         learning_rate: 0.5,
         min_weight: 0.01,
-        active_forgetting: ForgettingParams {
-            rate: 0.4,
-            radius: Some(2.0),
-            full_rate_sigma: Some(0.1),
-            ..AppearanceMapParams::as_published().active_forgetting
-        },
+        forgetting_rate: 0.4,
         ..AppearanceMapParams::as_published()
     }
 }
 
-fn map_of(views: &[(f64, f64)], params: &AppearanceMapParams) -> AppearanceMap<Tone> {
+/// A map whose views change by 1 over 1 m: match radius 1 m, d^gain = 2 m.
+fn empty_map() -> AppearanceMap<Tone> {
     let mut map = AppearanceMap::default();
+    map.scale_mut().add_near(ViewDifferenceSample { lag: 1.0, distance: 1.0 });
+    map
+}
+
+fn map_of(views: &[(f64, f64)], params: &AppearanceMapParams) -> AppearanceMap<Tone> {
+    let mut map = empty_map();
     for (tone, x) in views {
-        map.learn(Tone(*tone), &at(*x), params).expect("a good pose");
+        map.learn(Tone(*tone), &at(*x), params, GATE).expect("a good pose");
     }
     map
 }
@@ -54,7 +60,7 @@ fn weights(map: &AppearanceMap<Tone>) -> Vec<Vec<f64>> {
 
 #[test]
 fn what_is_seen_again_gains_weight_and_counts() {
-    let map = map_of(&[(0.0, 5.0), (0.0, 5.0)], &printed());
+    let map = map_of(&[(0.0, 5.0), (0.0, 5.0)], &published());
     // Eq. 16 with S = 1 from 0: 0.5, then 0.5 + 0.5 · 0.5.
     assert_eq!(weights(&map), [[0.75]]);
     let place = &map.references().values().next().unwrap().places[0];
@@ -66,7 +72,7 @@ fn what_is_seen_again_gains_weight_and_counts() {
 
 #[test]
 fn counts_weigh_the_poses() {
-    let map = map_of(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.2)], &printed());
+    let map = map_of(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.2)], &published());
     let place = &map.references().values().next().unwrap().places[0];
     assert!((place.gaussian.mean().x() - 0.05).abs() < 1e-12);
     // Eq. 14: σ² + ¾·0.05² + ¼·0.15².
@@ -76,77 +82,74 @@ fn counts_weigh_the_poses() {
 
 #[test]
 fn a_view_seen_elsewhere_fades_where_it_was() {
-    let map = map_of(&[(0.0, 0.0), (0.0, 5.0)], &printed());
+    let map = map_of(&[(0.0, 0.0), (0.0, 5.0)], &published());
     // Eq. 17 with S = 1: 0.5 · 0.5. The new place comes by Eq. 16 from 0.
     assert_eq!(weights(&map), [[0.25, 0.5]]);
 }
 
 #[test]
 fn half_a_likeness_teaches_half() {
-    let map = map_of(&[(0.0, 0.0), (0.6, 0.0)], &printed());
+    let map = map_of(&[(0.0, 0.0), (0.6, 0.0)], &published());
     let gain = 0.5 * similarity(0.6, 1.0);
     assert_eq!(map.len(), 1, "a view within the limit is no reference");
     assert!((weights(&map)[0][0] - (gain + (1.0 - gain) * 0.5)).abs() < 1e-12);
 }
 
 #[test]
-fn what_is_not_seen_any_more_is_forgotten_only_actively() {
-    let active = map_of(&[(0.0, 0.0), (3.0, 1.0)], &printed());
-    // Eqs. 18-19: b = 0.4 · (1 − 1/2) · 0.1/(0.1 + 0.1).
-    assert!((weights(&active)[0][0] - 0.5 * 0.9).abs() < 1e-12);
-    let passive = AppearanceMapParams { forgetting_mode: ForgettingMode::Passive, ..printed() };
-    assert_eq!(weights(&map_of(&[(0.0, 0.0), (3.0, 1.0)], &passive))[0], [0.5]);
-    let far = map_of(&[(0.0, 0.0), (3.0, 2.5)], &printed());
+fn missing_view_is_forgotten_only_actively() {
+    let active = map_of(&[(0.0, 0.0), (3.0, 0.5)], &published());
+    // Eqs. 18-19: b = 0.4 · (1 − 1/2) · 2/(0.1 + 0.1) is 2, clamped to 1: the published rate is not capped.
+    assert_eq!(active.len(), 1);
+    let slow = AppearanceMapParams { forgetting_rate: 0.04, ..published() };
+    let active = map_of(&[(0.0, 0.0), (3.0, 0.5)], &slow);
+    assert!((weights(&active)[0][0] - 0.5 * (1.0 - 0.2)).abs() < 1e-12);
+    let passive = AppearanceMapParams { forgetting_mode: ForgettingMode::Passive, ..published() };
+    assert_eq!(weights(&map_of(&[(0.0, 0.0), (3.0, 0.5)], &passive))[0], [0.5]);
+    let far = map_of(&[(0.0, 0.0), (3.0, 1.1)], &published());
     assert_eq!(weights(&far)[0], [0.5], "beyond the radius nothing is forgotten");
 }
 
 #[test]
-fn what_a_place_errs_by_does_not_slow_forgetting() {
-    let uncertainty = ForgettingUncertainty::AgainstPlace;
-    let params = AppearanceMapParams {
-        active_forgetting: ForgettingParams {
-            uncertainty_measure: uncertainty,
-            ..printed().active_forgetting
-        },
-        ..printed()
-    };
-    // As uncertain as the place itself: at full rate, b = 0.4 · (1 − 1/2).
-    let alike = map_of(&[(0.0, 0.0), (3.0, 1.0)], &params);
-    assert!((weights(&alike)[0][0] - 0.5 * 0.8).abs() < 1e-12);
-    // Twice as uncertain: σ² = 2 (2 · 0.2² − 2 · 0.1²) = 0.12.
+fn published_uncertainty_is_along_the_axes_of_the_map() {
+    // σ of 0.3 m along the robot and 0.1 m across, which faces 45°: σx + σy = 2 √((0.09 + 0.01)/2).
+    let params = AppearanceMapParams { forgetting_rate: 0.04, ..published() };
     let mut map = map_of(&[(0.0, 0.0)], &params);
-    let pose =
-        Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::repeat(2.0 * SIGMA)).expect("positive");
-    map.learn(Tone(3.0), &pose, &params).expect("a good pose");
-    let loss = 0.4 * 0.5 * 0.1 / 0.12_f64.sqrt();
+    let pose = Pose2::new(0.5, 0.0, std::f64::consts::FRAC_PI_4);
+    let pose = Gaussian::from_sigmas(pose, &Vector3::new(0.3, 0.1, 0.1)).expect("positive");
+    map.learn(Tone(3.0), &pose, &params, GATE).expect("a good pose");
+    let loss = 0.04 * 0.5 * 2.0 / (2.0 * 0.05_f64.sqrt());
+    assert!((weights(&map)[0][0] - 0.5 * (1.0 - loss)).abs() < 1e-12);
+}
+
+#[test]
+fn error_of_a_place_does_not_slow_forgetting() {
+    let params =
+        AppearanceMapParams { forgetting_uncertainty: ForgettingUncertainty::AgainstPlace, ..published() };
+    // As uncertain as the place itself: at the full rate, b = 0.4 · (1 − 1/2).
+    let alike = map_of(&[(0.0, 0.0), (3.0, 0.5)], &params);
+    assert!((weights(&alike)[0][0] - 0.5 * 0.8).abs() < 1e-12);
+    // σ of 2 m against 0.1 m: σ² = 2 (2 · 2² − 2 · 0.1²).
+    let mut map = map_of(&[(0.0, 0.0)], &params);
+    let pose = Gaussian::from_sigmas(Pose2::new(0.5, 0.0, 0.0), &Vector3::new(2.0, 2.0, 0.1));
+    map.learn(Tone(3.0), &pose.expect("positive"), &params, GATE).expect("a good pose");
+    let loss = 0.4 * 0.5 * 2.0 / (2.0 * (2.0 * 4.0 - 2.0 * 0.01_f64)).sqrt();
     assert!((weights(&map)[0][0] - 0.5 * (1.0 - loss)).abs() < 1e-12);
 }
 
 #[test]
 fn forgotten_references_go_and_the_map_stays_bounded() {
-    let params = AppearanceMapParams {
-        active_forgetting: ForgettingParams {
-            rate: 1.0,
-            full_rate_sigma: Some(10.0),
-            ..printed().active_forgetting
-        },
-        ..printed()
-    };
+    let params = AppearanceMapParams { forgetting_rate: 1.0, ..published() };
     let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);
     assert_eq!(map.len(), 1, "the old view of this very spot is gone at once");
-    let few = AppearanceMapParams { max_references: 3, ..printed() };
+    let few = AppearanceMapParams { max_references: 3, ..published() };
     let many: Vec<(f64, f64)> = (0..9).map(|k| (2.0 * f64::from(k), 10.0 * f64::from(k))).collect();
     assert_eq!(map_of(&many, &few).len(), 3);
 }
 
 #[test]
 fn residuals_correct_places_without_drawing_them_together() {
-    let params = AppearanceMapParams {
-        place_update: PlaceUpdateRule::Residual,
-        insertion_distance_factor: 10.0,
-        ..printed()
-    };
-    let mut map: AppearanceMap<Tone> = AppearanceMap::default();
+    let params = AppearanceMapParams { place_update: PlaceUpdateRule::Residual, ..published() };
+    let mut map = empty_map();
     for k in 0..5 {
         let view = Tone(0.1 * f64::from(k));
         map.teach(view, &at(0.2 * f64::from(k))).expect("a good pose");
@@ -157,21 +160,21 @@ fn residuals_correct_places_without_drawing_them_together() {
     };
     let before = spread(&map);
     for _ in 0..20 {
-        map.learn(Tone(0.2), &at(0.4), &params).expect("a good pose");
+        map.learn(Tone(0.2), &at(0.4), &params, GATE).expect("a good pose");
     }
-    // The pose as printed would pull all five towards 0.4 m; a residual of nothing moves nothing.
+    // The published rule would pull all five towards 0.4 m; a residual of nothing moves nothing.
     assert!((spread(&map) - before).abs() < 0.02, "from {before} to {}", spread(&map));
 }
 
 #[test]
-fn poses_without_meaning_leave_the_map_as_it_is() {
-    let mut map = map_of(&[(0.0, 0.0)], &printed());
+fn invalid_pose_leaves_the_map_unchanged() {
+    let mut map = map_of(&[(0.0, 0.0)], &published());
     let before = weights(&map);
     let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), nalgebra::Matrix3::zeros());
     let nowhere =
         Gaussian::from_parts_unchecked(Pose2::new(f64::NAN, 0.0, 0.0), nalgebra::Matrix3::identity());
     for bad in [flat, nowhere] {
-        assert!(map.learn(Tone(0.0), &bad, &printed()).is_err());
+        assert!(map.learn(Tone(0.0), &bad, &published(), GATE).is_err());
         assert!(map.teach(Tone(0.0), &bad).is_err());
     }
     assert_eq!((map.len(), weights(&map)), (1, before));
@@ -179,7 +182,7 @@ fn poses_without_meaning_leave_the_map_as_it_is() {
 
 #[test]
 fn a_map_is_its_parts() {
-    let map = map_of(&[(0.0, 0.0), (3.0, 1.0), (0.1, 0.1)], &printed());
+    let map = map_of(&[(0.0, 0.0), (3.0, 1.0), (0.1, 0.1)], &published());
     let parts = || (map.search().clone(), map.references().clone(), map.scale().clone());
     let (search, references, scale) = parts();
     let again = AppearanceMap::from_parts(search, references, scale, map.next_id()).unwrap();

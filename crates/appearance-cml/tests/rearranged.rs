@@ -32,8 +32,8 @@ fn lap(localizer: &mut Localizer, fields: [&Field; 2], rng: &mut ChaCha8Rng) -> 
     errors.iter().sum::<f64>() / errors.len() as f64
 }
 
-/// What the second lap errs by with what the first has learned.
-fn second_lap(seed: u64, patience: usize, memory: usize) -> f64 {
+/// Error of the second lap in the map as it was taught, and in the map that the first lap has adapted.
+fn second_lap(seed: u64) -> [f64; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (before, after) = (Field::new(&mut rng), Field::new(&mut rng));
     let mut teacher = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
@@ -41,22 +41,21 @@ fn second_lap(seed: u64, patience: usize, memory: usize) -> f64 {
         teacher.teach(before.view(&beside(k, 0.0), &mut rng), &known(beside(k, 0.0))).expect("a good view");
     }
     let mut drive = |map: AppearanceMap<FieldView>, learning| {
-        let params = LocalizerParams { learning, patience, memory, ..LocalizerParams::default() };
+        let params = LocalizerParams { learning, ..LocalizerParams::default() };
         let start = Start::Known(known(beside(0, 0.0)));
         let mut localizer = Localizer::with_map(params, map, start).expect("valid parameters");
         let error = lap(&mut localizer, [&before, &after], &mut rng);
         (localizer.into_map(), error)
     };
-    let (map, _) = drive(teacher.into_map(), Learning::Adapting);
-    drive(map, Learning::Static).1
+    let taught = teacher.into_map();
+    let (adapted, _) = drive(taught.clone(), Learning::Adapting);
+    [drive(taught, Learning::Static).1, drive(adapted, Learning::Static).1]
 }
 
 #[test]
-fn references_of_a_rearranged_aisle_are_corrected_at_its_end() {
-    let of = |patience, memory| (0..10).map(|seed| second_lap(seed, patience, memory)).sum::<f64>() / 10.0;
-    let LocalizerParams { patience, memory, .. } = LocalizerParams::default();
-    let (waiting, spread, at_once) = (of(patience, 0), of(0, memory), of(0, 0));
-    // A random walk of length 1 has a mean variance of 1/2, one that is tied down at both ends of 1/6: 0.58 in σ. Half way from there to no gain.
-    assert!(waiting < 0.79 * at_once, "{waiting} m, {at_once} m without waiting");
-    assert!(spread < 0.79 * at_once, "{spread} m, {at_once} m where nothing is spread back");
+fn robot_passes_a_rearranged_aisle_by_odometry_and_learns_it() {
+    let laps: Vec<[f64; 2]> = (0..10).map(second_lap).collect();
+    let mean = |map: usize| laps.iter().map(|lap| lap[map]).sum::<f64>() / laps.len() as f64;
+    // Odometry alone errs by 0.3 m (σ) after 16 m. References that were learned on the first lap have its errors.
+    assert!(mean(0) < 0.3 && mean(1) < 1.5 * mean(0), "{laps:?}");
 }

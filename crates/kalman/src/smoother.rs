@@ -107,6 +107,29 @@ where
         Ok(innovation)
     }
 
+    /// Replaces the filtered estimate of the last state by that of another filter, such as a component of a mixture.
+    ///
+    /// ```
+    /// use nalgebra::{Matrix1, Vector1};
+    /// use wayfix_gaussian_core::Gaussian;
+    /// use wayfix_kalman::{LinearMotion, RtsSmoother};
+    /// let walk = LinearMotion::stationary(Matrix1::new(1.0))?;
+    /// let at = |x: f64| Gaussian::new(Vector1::new(x), Matrix1::new(1e-6));
+    /// let mut smoother = RtsSmoother::new(at(0.0)?)?;
+    /// smoother.predict(&walk, &None)?;
+    /// smoother.predict(&walk, &None)?;
+    /// smoother.set_filtered(at(2.0)?)?;
+    /// assert!((smoother.smoothed()?[1].mean()[0] - 1.0).abs() < 1e-3); // half way
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the covariance is not positive definite beyond rounding; the smoother is then unchanged.
+    pub fn set_filtered(&mut self, filtered: Gaussian<X>) -> Result<(), KalmanError> {
+        self.current = ExtendedForm.belief_from(&filtered)?;
+        Ok(())
+    }
+
     /// All states given all measurements, first to last.
     ///
     /// # Errors

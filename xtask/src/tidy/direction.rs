@@ -17,7 +17,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
     ("condensation", &["estimation-traits", "gaussian-core", "integrity", "particle"]),
     ("visual-tracking", &["gaussian-core", "particle"]),
-    ("appearance-cml", &["estimation-traits", "gaussian-core"]),
+    ("appearance-cml", &["estimation-traits", "gaussian-core", "integrity", "kalman"]),
     ("sensor-log", &["estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
     ("evaluation", &["estimation-traits", "gaussian-core", "sensor-log"]),

@@ -6,7 +6,7 @@ use super::GaussianFusionRule;
 use super::split::{Split, intersect};
 use crate::{AppearanceMapError, PoseHypothesis};
 
-/// Makes one Gaussian of two that mean the same place.
+/// Combines two Gaussians of the same place.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -15,10 +15,10 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// use wayfix_gaussian_core::Gaussian;
 /// let belief = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(0.2, 0.2, 0.1))?;
 /// let a = PoseHypothesis::new(0.5, belief.clone());
-/// // The same news twice is no news ...
+/// // The same estimate twice carries no new information ...
 /// let twice = combine(&a, &a, GaussianFusionRule::WeightedIntersection)?;
 /// assert!((twice.covariance() - belief.covariance()).norm() < 1e-12);
-/// // ... unless it is known to be independent.
+/// // ... unless both are independent.
 /// let fresh = PoseHypothesis { independent: 1.0, ..a.clone() };
 /// let fused = combine(&fresh, &fresh, GaussianFusionRule::SplitIntersection)?;
 /// assert!((fused.covariance() * 2.0 - belief.covariance()).norm() < 1e-12);
@@ -26,7 +26,7 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// ```
 ///
 /// # Errors
-/// When a covariance is singular or something is not finite.
+/// Returns an error if a covariance is singular or a number is not finite.
 pub fn combine(
     a: &PoseHypothesis,
     b: &PoseHypothesis,
@@ -54,8 +54,8 @@ fn share(a: &PoseHypothesis, b: &PoseHypothesis) -> f64 {
     let for_a = a.weight * b.gaussian.covariance().determinant();
     let for_b = b.weight * a.gaussian.covariance().determinant();
     let sum = for_a + for_b;
-    // Two hypotheses without weight, or determinants beyond the numbers, leave nothing to prefer one by.
-    if sum > 0.0 && sum.is_finite() { for_b / sum } else { 0.5 }
+    // Without weights, or beyond the range of numbers, both count the same.
+    if sum > 0.0 && sum.is_finite() { for_b / sum } else { 1.0 / 2.0 }
 }
 
 /// $`C^{-1} = (1-α) C_a^{-1} + α C_b^{-1}`$, $`μ = C ((1-α) C_a^{-1} μ_a + α C_b^{-1} μ_b)`$ in the chart at $`μ_a`$.

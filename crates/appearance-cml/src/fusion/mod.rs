@@ -1,14 +1,14 @@
-//! How what odometry, views and others say of the pose becomes one belief.
+//! Fusion of odometry, views and other sources into one belief.
 
 mod combine;
 mod fuse;
-mod heading;
+mod likelihood;
 mod params;
 mod source;
 mod split;
 
 pub use combine::combine;
 pub use fuse::fuse;
-pub(crate) use heading::update_heading;
+pub use likelihood::{PoseLikelihood, UniformComponent};
 pub use params::{FusionParams, GaussianFusionRule, MixtureWeighting};
 pub use source::{PoseSource, PositionFix};

@@ -1,42 +1,44 @@
 use crate::{AppearanceMapError, check};
 
-/// Fusion of two Gaussians of one place.
+/// How two Gaussians of the same place are combined.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::GaussianFusionRule::default(), wayfix_appearance_cml::GaussianFusionRule::SplitIntersection);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum GaussianFusionRule {
     /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
     WeightedIntersection,
-    /// Split covariance intersection: what is independent in a covariance is fused as such, the rest is intersected, with the
-    /// share that makes the result smallest. [Julier & Uhlmann 2001]
+    /// Split covariance intersection: fuses the independent parts of the covariances and intersects the rest, with the share of
+    /// least determinant. [Julier & Uhlmann 2001]
     #[default]
     SplitIntersection,
 }
 
-/// Weight of a fused component, from its weights in both mixtures.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How the weights of two mixtures are combined.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::MixtureWeighting::default(), wayfix_appearance_cml::MixtureWeighting::Evidence);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MixtureWeighting {
-    /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
+    /// Weights of matching components add up; the others are copied. [Gross et al. 2005, Eqs. 6-8]
     Support,
-    /// Weights are probabilities: with each counterpart a component has the weight $`w_a w_b e^{-d^2/2}`$, and it remains as it is, with the chance
-    /// $`w_a m`$ that the view is not recognized where it should be: the missed detection of probabilistic data association [Bar-Shalom & Tse 1975].
-    Evidence {
-        /// $`m`$: not being recognized, beside 1 for a counterpart that looks exactly the same.
-        missed: f64,
-        /// Factor of something new that no hypothesis foresaw: the chance that the robot was carried there.
-        appeared: f64,
-    },
-}
-
-impl Default for MixtureWeighting {
-    fn default() -> Self {
-        Self::Evidence { missed: 0.2, appeared: 1e-5 }
-    }
+    /// Weights are probabilities: each predicted component is integrated over the likelihood ([`fuse`](crate::fuse)).
+    #[default]
+    Evidence,
 }
 
 /// How two mixtures over poses are fused.
+///
+/// ```
+/// use wayfix_appearance_cml::FusionParams;
+/// assert!(FusionParams::default().gate > FusionParams::as_published().gate);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -45,7 +47,7 @@ impl Default for MixtureWeighting {
     serde(default, deny_unknown_fields)
 )]
 pub struct FusionParams {
-    /// Squared Mahalanobis distance $`γ`$ below which two components mean one place.
+    /// Squared Mahalanobis distance below which two poses mean one place: $`γ`$ of Eq. 2, $`δ`$ of Eq. 12 and $`d^{max}`$ of Eqs. 15-17.
     /// Default 16.3: 99.9 % of a chi-squared of three degrees of freedom.
     pub gate: f64,
     /// Default [`GaussianFusionRule::SplitIntersection`].
@@ -65,7 +67,7 @@ impl Default for FusionParams {
 }
 
 impl FusionParams {
-    /// As printed: Eqs. 2-8 with the gate at 95 %.
+    /// As published: Eqs. 2-8 with the gate at 95 %.
     pub fn as_published() -> Self {
         Self {
             gate: 7.8,
@@ -74,16 +76,11 @@ impl FusionParams {
         }
     }
 
-    /// Whether the numbers have a meaning.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
-        check::positive("gate of the fusion", self.gate)?;
-        if let MixtureWeighting::Evidence { missed, appeared } = self.mixture_weighting {
-            check::share("weight of a hypothesis that is missed", missed)?;
-            check::share("weight of a hypothesis that appears", appeared)?;
-        }
-        Ok(())
+        check::positive("gate of the fusion", self.gate)
     }
 }

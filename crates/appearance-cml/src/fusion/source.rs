@@ -1,3 +1,5 @@
+use std::f64::consts::{FRAC_PI_3, PI};
+
 use nalgebra::{Matrix2, Vector2};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture, check_covariance};
@@ -6,7 +8,7 @@ use crate::{AppearanceMapError, PoseHypothesis};
 
 /// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map.
 ///
-/// **Law**: weights are in [0, 1]; 1 means that no other pose is possible.
+/// **Law**: weights are probabilities in [0, 1]; 1 means that no other pose is possible.
 pub trait PoseSource {
     /// The hypotheses of the source at this time; the list may be empty.
     ///
@@ -27,8 +29,8 @@ pub trait PoseSource {
 /// use nalgebra::{Matrix2, Vector2};
 /// use wayfix_appearance_cml::{PoseSource, PositionFix};
 /// let fix = PositionFix { position: Vector2::new(3.0, 4.0), covariance: Matrix2::identity(), weight: 0.9 };
-/// let said = fix.hypotheses(None)?;
-/// assert_eq!((said[0].gaussian.mean().x(), said[0].independent), (3.0, 1.0));
+/// let hypotheses = fix.hypotheses(None)?;
+/// assert_eq!((hypotheses[0].gaussian.mean().x(), hypotheses[0].independent), (3.0, 1.0));
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -41,11 +43,11 @@ pub struct PositionFix {
     pub weight: f64,
 }
 
-/// σ of a heading of which nothing is known: that of a uniform one, $`π/\sqrt 3`$.
-const UNKNOWN_HEADING: f64 = 1.814;
+/// Variance of an unknown heading: that of a uniform one, $`π^2/3`$, rad².
+const UNKNOWN_HEADING: f64 = PI * FRAC_PI_3;
 
 impl PoseSource for PositionFix {
-    /// One hypothesis for each predicted heading, so that a turn of the body frame does not mix up the axes; one facing east without any.
+    /// One hypothesis for each predicted heading, so that the axes of the body frames agree; one with heading 0 without a prediction.
     fn hypotheses(
         &self,
         predicted: Option<&GaussianMixture<Pose2<f64>>>,
@@ -56,7 +58,7 @@ impl PoseSource for PositionFix {
             let mean = Pose2::new(self.position.x, self.position.y, heading);
             let to_body = mean.rotation_matrix().transpose();
             let mut covariance = (to_body * self.covariance * to_body.transpose()).to_homogeneous();
-            covariance[(2, 2)] = UNKNOWN_HEADING * UNKNOWN_HEADING;
+            covariance[(2, 2)] = UNKNOWN_HEADING;
             Ok(PoseHypothesis {
                 weight: self.weight,
                 gaussian: Gaussian::new(mean, covariance)?,

@@ -19,24 +19,24 @@ impl Split {
     }
 }
 
-/// How finely the share is searched; the determinant is flat at its minimum, so that this costs well under a percent of it.
-const STEPS: u32 = 24;
-
 /// Split covariance intersection of two, by the share $`ω`$ of least determinant.
 ///
 /// $`C^{-1} = (C_{a,s}/ω + C_{a,i})^{-1} + (C_{b,s}/(1-ω) + C_{b,i})^{-1}`$. [Julier & Uhlmann 2001]
+/// The information is concave in $`ω`$, so that the determinant has one minimum. The interval around it shrinks by a quarter in each
+/// iteration. After twice as many iterations as a number has decimal digits its width is 2e-4.
 pub(super) fn intersect(a: &Split, b: &Split) -> Result<(Vector3<f64>, Matrix3<f64>), GaussianError> {
-    let mut best: Option<(f64, Vector3<f64>, Matrix3<f64>)> = None;
-    for step in 1..STEPS {
-        let share = f64::from(step) / f64::from(STEPS);
-        let (mean, covariance) = fused((a.mean, a.widened(share)), (b.mean, b.widened(1.0 - share)))?;
-        let determinant = covariance.determinant();
-        if best.as_ref().is_none_or(|(least, ..)| determinant < *least) {
-            best = Some((determinant, mean, covariance));
+    let at = |share: f64| fused((a.mean, a.widened(share)), (b.mean, b.widened(1.0 - share)));
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..2 * f64::DIGITS {
+        let middle = (low + high) / 2.0;
+        let (left, right) = ((low + middle) / 2.0, (middle + high) / 2.0);
+        if at(left)?.1.determinant() < at(right)?.1.determinant() {
+            high = right;
+        } else {
+            low = left;
         }
     }
-    let (_, mean, covariance) = best.ok_or(GaussianError::Empty { what: "shares" })?;
-    Ok((mean, covariance))
+    at((low + high) / 2.0)
 }
 
 /// The product of two Gaussians, its covariance in Joseph form.

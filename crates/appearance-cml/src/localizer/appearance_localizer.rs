@@ -1,22 +1,22 @@
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::belief::Belief;
-use super::contest::Contest;
-use super::journey::Journey;
-use super::scale_learner::ScaleLearner;
-use super::survey::Survey;
-use super::trail::Trail;
-use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
+use super::pose_history::PoseHistory;
+use super::relocalize::KidnapTest;
+use super::{Event, Learning, LocalizerParams, Start, UpdateOutcome};
+use crate::model::{HEADING_SIGMA, ScaleLearner};
+use crate::state::Motion;
 use crate::{
-    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, PoseSource, ReferenceId, ReferenceSearch,
-    separation_squared,
+    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, OdometryNoise, PoseSource, ReferenceId,
+    ReferenceSearch, separation_squared,
 };
 
 /// Localizes in an appearance map, and learns it. [Gross et al. 2005]
 ///
 /// [`predict`](Self::predict) with each odometry increment, [`update`](Self::update) with each view. With an empty map and a known start the
-/// map is built as the robot goes; [`teach`](Self::teach) builds one from known poses.
+/// robot builds the map; [`teach`](Self::teach) builds one from known poses. `D` is the view, `S` the search among views, and `M` the motion
+/// model.
 ///
 /// ```
 /// # use wayfix_appearance_cml::{ViewDifference, Descriptor};
@@ -44,72 +44,79 @@ use crate::{
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
+pub struct AppearanceLocalizer<D, S = LinearSearch<D>, M = OdometryNoise> {
     pub(super) params: LocalizerParams,
+    pub(super) motion_model: M,
     pub(super) map: AppearanceMap<D, S>,
     pub(super) belief: Belief,
-    pub(super) contest: Contest,
-    /// Since the last view.
+    pub(super) kidnap: KidnapTest,
+    /// Since the last view that was used.
     pub(super) motion: Motion,
-    pub(super) journey: Journey<D>,
+    pub(super) history: PoseHistory<D>,
     pub(super) scale_learner: ScaleLearner<D>,
-    /// The last view that was used.
-    pub(super) last_seen: Option<D>,
-    /// The last view that was learned.
+    /// The last view that left the history.
     pub(super) learned_last: Option<D>,
-    pub(super) taught_last: Option<Pose2<f64>>,
-    pub(super) was_unimodal: bool,
+    taught_last: Option<Pose2<f64>>,
+    was_unimodal: bool,
     pub(super) has_seen: bool,
-    pub(super) trail: Trail,
-    /// How far views have moved the estimate since the way behind was revised, m.
-    pub(super) corrected: f64,
-    pub(super) since_revision: usize,
-    pub(super) survey: Survey,
-    /// Counts views, to pick another far reference with each.
-    pub(super) views: u32,
+    /// Number of views, which chooses other far references for each.
+    pub(super) n_views: u32,
 }
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D> + Default> AppearanceLocalizer<D, S> {
-    /// A localizer without a map.
+    /// A localizer with an empty map.
     ///
     /// # Errors
-    /// When a parameter or the start has no meaning.
+    /// Returns an error if a parameter is out of range or the start is invalid.
     pub fn new(params: LocalizerParams, start: Start) -> Result<Self, AppearanceMapError> {
         Self::with_map(params, AppearanceMap::default(), start)
     }
 }
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
-    /// A localizer in a map that was learned before.
+    /// A localizer with a map, and with the motion model [`LocalizerParams::odometry`].
     ///
     /// # Errors
-    /// When a parameter or the start has no meaning.
+    /// Returns an error if a parameter is out of range or the start is invalid.
     pub fn with_map(
         params: LocalizerParams,
         map: AppearanceMap<D, S>,
         start: Start,
     ) -> Result<Self, AppearanceMapError> {
+        Self::with_motion_model(params, map, start, params.odometry)
+    }
+}
+
+impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
+where
+    M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
+{
+    /// A localizer with a map and a motion model; [`LocalizerParams::odometry`] is not used.
+    ///
+    /// # Errors
+    /// Returns an error if a parameter is out of range or the start is invalid.
+    pub fn with_motion_model(
+        params: LocalizerParams,
+        map: AppearanceMap<D, S>,
+        start: Start,
+        motion_model: M,
+    ) -> Result<Self, AppearanceMapError> {
         params.validate()?;
         let belief = Belief::of_start(start)?;
-        let was_unimodal = belief.state.is_some();
         Ok(Self {
-            params,
+            motion_model,
             map,
+            was_unimodal: belief.state.is_some(),
             belief,
-            contest: Contest::default(),
+            kidnap: KidnapTest::new(&params)?,
             motion: Motion::none(),
-            journey: Journey::default(),
+            history: PoseHistory::default(),
             scale_learner: ScaleLearner::default(),
-            last_seen: None,
             learned_last: None,
             taught_last: None,
-            was_unimodal,
             has_seen: false,
-            trail: Trail::default(),
-            corrected: 0.0,
-            since_revision: 0,
-            survey: Survey::default(),
-            views: 0,
+            n_views: 0,
+            params,
         })
     }
 
@@ -121,122 +128,131 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     pub fn map(&self) -> &AppearanceMap<D, S> {
         &self.map
     }
-    /// The map, when localizing is over; what waits to be learned is not in it.
+    /// The map without the views that wait to be learned.
     pub fn into_map(self) -> AppearanceMap<D, S> {
         self.map
     }
-    /// Where the robot may be; `None` when it may be anywhere.
+    /// The belief; `None` if the pose is unknown.
     pub fn state(&self) -> Option<&GaussianMixture<Pose2<f64>>> {
         self.belief.state.as_ref()
     }
-    /// The heaviest hypothesis.
+    /// The heaviest component.
     pub fn estimate(&self) -> Option<&Gaussian<Pose2<f64>>> {
         self.belief.heaviest()
     }
 
-    /// Puts the robot somewhere else; what waits to be learned is given up.
+    /// Starts at another pose. Views that wait to be learned are given up.
     ///
     /// # Errors
-    /// When the start has no meaning.
+    /// Returns an error if the start is invalid.
     pub fn restart(&mut self, start: Start) -> Result<(), AppearanceMapError> {
-        self.belief = Belief::of_start(start)?;
-        self.was_unimodal = self.belief.state.is_some();
-        self.contest = Contest::default();
-        self.motion = Motion::none();
-        self.has_seen = false;
-        self.journey = Journey::default();
-        self.trail = Trail::default();
-        self.survey = Survey::default();
-        (self.corrected, self.since_revision) = (0.0, 0);
+        let (belief, kidnap) = (Belief::of_start(start)?, KidnapTest::new(&self.params)?);
+        self.was_unimodal = belief.state.is_some();
+        (self.belief, self.kidnap, self.motion) = (belief, kidnap, Motion::none());
+        self.history = PoseHistory::default();
         self.scale_learner.interrupt();
-        self.last_seen = None;
-        self.learned_last = None;
+        (self.learned_last, self.has_seen) = (None, false);
         Ok(())
     }
 
-    /// The robot has moved by `increment`, in the body frame at its beginning.
+    /// Predicts the belief by an odometry increment, in the body frame at its beginning. [Gross et al. 2005, Eq. 1]
     ///
     /// # Errors
-    /// When the increment is not finite; the state is as before.
+    /// Returns an error if the increment is not finite; the state is then unchanged.
     pub fn predict(&mut self, increment: &Pose2<f64>) -> Result<(), AppearanceMapError> {
-        let noise = &self.params.odometry;
-        let motion = self.motion.then(increment, noise)?;
-        let belief = self.belief.moved(increment, noise)?;
-        self.contest = self.contest.moved(increment, noise);
-        (self.belief, self.motion) = (belief, motion);
+        let from = self.belief.heaviest().map_or(self.motion.increment, |pose| *pose.mean());
+        let motion = self.motion.then(&Motion::of_increment(&self.motion_model, &from, increment))?;
+        self.belief = self.belief.predicted(increment, &self.motion_model)?;
+        self.motion = motion;
+        self.kidnap.predict(|belief| belief.predicted(increment, &self.motion_model));
         Ok(())
     }
 
-    /// The robot sees `view`.
+    /// Updates belief and map with a view.
     ///
     /// # Errors
-    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceMapError::ReferenceIdsExhausted`] when a new reference
-    /// finds no number; the map is as before, and the state is updated.
+    /// Returns an error if the belief is singular or a number is not finite; state and map are then unchanged. Returns
+    /// [`AppearanceMapError::ReferenceIdsExhausted`] if a new reference finds no number; the map is then unchanged, and the state is updated.
     pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceMapError> {
         self.update_with(view, &[])
     }
 
-    /// The robot sees `view`, and other sources say where it may be as well.
+    /// Updates belief and map with a view and other sources. [Gross et al. 2005, Sec. 2]
     ///
     /// # Errors
-    /// As for [`update`](Self::update), and when a source fails.
+    /// Returns the errors of [`update`](Self::update), and the error of a source.
     pub fn update_with(
         &mut self,
         view: D,
         sources: &[&dyn PoseSource],
     ) -> Result<UpdateOutcome, AppearanceMapError> {
-        let is_news = self.is_news();
-        let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
-        let mut contest = None;
-        if is_news {
-            let (decided, believed) = self.contested(&view, &belief).decided(belief, &self.params);
-            (contest, belief) = (Some(decided), believed);
-        }
-        let mut events = self.change_to(&belief)?;
-        self.belief = belief;
-        if let Some(contest) = contest {
-            self.contest = contest;
-        }
-        if is_news {
-            self.last_seen = Some(view.clone());
+        let view = self.is_news().then_some(view);
+        let matched = view.as_ref().map(|view| self.match_view(view)).transpose()?; // Eqs. 9-10
+        let likelihood = matched.as_ref().map(|matched| &matched.likelihood);
+        let mut belief = self.belief.fused(likelihood, sources, self.map.area(), &self.params)?; // Eqs. 1-8
+        let is_moved = match &view {
+            Some(view) => self.relocalize(view, &mut belief)?,
+            None => false,
+        };
+        let mut events = self.replace_belief(belief, is_moved)?;
+        if let Some(view) = view {
             self.has_seen = true;
-            let is_adapting = self.params.learning == Learning::Adapting;
-            let learned = if is_adapting { self.learn(view, &mut events) } else { Ok(()) };
-            self.motion = Motion::none();
-            learned?;
+            self.n_views = self.n_views.wrapping_add(1);
+            let motion = std::mem::replace(&mut self.motion, Motion::none());
+            if self.params.learning == Learning::Adapting {
+                self.learn(view, &motion, &mut events)?; // Eqs. 11-19
+            }
         }
-        let estimate = self.belief.one_place(&self.params.unimodal).cloned();
-        Ok(UpdateOutcome { events, estimate, n_sightings })
+        let n_detections = matched.map_or(0, |matched| matched.n_detections);
+        Ok(UpdateOutcome { events, estimate: self.one_place().cloned(), n_detections })
     }
 
-    /// Learns that `view` is seen from `pose`, which is known: the map is taught, the state is not touched.
+    /// Learns that `view` is seen from the known `pose`. The belief stays.
     ///
     /// # Errors
-    /// When the pose has no meaning or the map is full.
+    /// Returns an error if the pose is invalid or no reference number is left; the map is then unchanged.
     pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceMapError> {
-        let way = self.taught_last.map_or(0.0, |last| (pose.mean().translation - last.translation).norm());
+        let distance =
+            self.taught_last.map_or(0.0, |last| (pose.mean().translation - last.translation).norm());
         let id = self.map.teach(view.clone(), pose)?;
         self.taught_last = Some(*pose.mean());
-        self.measure(way, &view, Some(pose.mean()));
+        self.n_views = self.n_views.wrapping_add(1);
+        self.measure(distance, &view, Some(pose.mean()));
         Ok(id)
     }
 
-    /// What changes with this belief.
-    fn change_to(&mut self, belief: &Belief) -> Result<Vec<Event>, AppearanceMapError> {
-        let is_unimodal = belief.one_place(&self.params.unimodal).is_some();
+    /// Whether the robot has moved since the last view that was used: by half a step, or, where the belief is unimodal, by an angle that a
+    /// comparison resolves. A view from the same pose carries no new information. A motion below its own σ is no motion.
+    fn is_news(&self) -> bool {
+        let Motion { increment, covariance } = &self.motion;
+        let distance = self.motion.distance();
+        let sigma = covariance.fixed_view::<2, 2>(0, 0).trace().sqrt();
+        let has_moved = distance >= self.map.scale().step() / 2.0 && distance > sigma;
+        let has_turned = increment.heading().abs() > HEADING_SIGMA && self.one_place().is_some();
+        !self.has_seen || has_moved || has_turned
+    }
+
+    /// The pose, if the belief is unimodal and no alternative is likely.
+    pub(super) fn one_place(&self) -> Option<&Gaussian<Pose2<f64>>> {
+        let min_weight = self.params.unimodal_weight;
+        self.belief.unimodal(min_weight).filter(|_| self.kidnap.probability() <= 1.0 - min_weight)
+    }
+
+    /// Replaces the belief; `is_moved` says that an alternative has won.
+    fn replace_belief(&mut self, belief: Belief, is_moved: bool) -> Result<Vec<Event>, AppearanceMapError> {
+        let is_elsewhere = match (belief.heaviest(), self.belief.heaviest()) {
+            (Some(new), Some(old)) => separation_squared(new, old)? > self.params.fusion.gate,
+            _ => false,
+        };
+        self.belief = belief;
+        let is_unimodal = self.one_place().is_some();
         let mut events = Vec::new();
-        match (self.was_unimodal, is_unimodal) {
+        match (std::mem::replace(&mut self.was_unimodal, is_unimodal), is_unimodal) {
             (true, false) => events.push(Event::Lost),
             (false, true) => events.push(Event::Found),
             _ => {}
         }
-        if let (Some(now), Some(followed)) = (belief.heaviest(), self.belief.heaviest()) {
-            let correction = (now.mean().translation - followed.mean().translation).norm();
-            let is_elsewhere = separation_squared(now, followed)? > self.params.fusion.gate;
-            self.corrected = if is_elsewhere { 0.0 } else { self.corrected + correction };
-            events.extend(is_elsewhere.then_some(Event::Relocated));
-        }
-        self.was_unimodal = is_unimodal;
+        events.extend((is_moved || is_elsewhere).then_some(Event::Relocated));
         Ok(events)
     }
 }

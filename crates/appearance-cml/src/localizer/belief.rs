@@ -1,50 +1,31 @@
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
-use super::Start;
-use super::anywhere::Anywhere;
-use crate::{AppearanceMapError, OdometryNoise, UnimodalParams, propagate, unimodal};
+use super::{LocalizerParams, Start};
+use crate::{
+    AppearanceMapError, MixtureWeighting, PoseHypothesis, PoseLikelihood, PoseSource, UniformComponent, fuse,
+    propagate, simplify, unimodal,
+};
 
-/// Where a belief looks for what the robot sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Outlook {
-    /// Where it puts the robot, and nowhere else: what agrees with no hypothesis is passed over.
-    Nearby,
-    /// In the whole map, when nothing nearby is seen.
-    Map,
-    /// In the whole map, and for places that look less alike as well, until it believes in one: it began from nothing in a robot that knows to be lost.
-    Lost,
-}
-
-/// Where a robot may be, and how much of the weight is left for all other places.
+/// $`p(x_t)`$: a Gaussian mixture and a uniform component.
 #[derive(Clone, Debug)]
 pub(super) struct Belief {
-    /// The heaviest component first; `None` when the robot may be anywhere.
+    /// The heaviest component first; `None` if the pose is unknown.
     pub(super) state: Option<GaussianMixture<Pose2<f64>>>,
-    pub(super) anywhere: Anywhere,
-    pub(super) outlook: Outlook,
+    /// Probability of the uniform component: the robot may be anywhere.
+    pub(super) uniform: f64,
 }
 
 impl Belief {
-    /// Nothing is known.
-    pub(super) fn nowhere(outlook: Outlook) -> Self {
-        Self { state: None, anywhere: Anywhere::everything(), outlook }
-    }
-
     pub(super) fn of_start(start: Start) -> Result<Self, AppearanceMapError> {
         let state = start.into_state()?;
-        Ok(match state {
-            Some(_) => Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Map },
-            None => Self::nowhere(Outlook::Lost),
-        })
+        let uniform = if state.is_some() { 0.0 } else { 1.0 };
+        Ok(Self { state, uniform })
     }
 
-    /// The heaviest hypothesis alone, looked for where it is.
-    pub(super) fn heaviest_alone(&self) -> Self {
-        let alone =
-            |heaviest: &Gaussian<_>| GaussianMixture::from_log_weights(vec![(0.0, heaviest.clone())]).ok();
-        let state = self.heaviest().and_then(alone);
-        Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Nearby }
+    /// A single pose.
+    pub(super) fn at(pose: Gaussian<Pose2<f64>>) -> Result<Self, AppearanceMapError> {
+        Self::of_start(Start::Known(pose))
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {
@@ -52,27 +33,65 @@ impl Belief {
     }
 
     pub(super) fn heaviest(&self) -> Option<&Gaussian<Pose2<f64>>> {
-        // It comes first since the mixture is simplified after each view, and odometry changes no weight.
         self.components().first()
     }
 
-    /// The pose, when the state is one place.
-    pub(super) fn one_place(&self, params: &UnimodalParams) -> Option<&Gaussian<Pose2<f64>>> {
-        let state = self.state.as_ref().filter(|_| self.anywhere.is_little());
-        state.and_then(|state| unimodal(state, params))
+    /// The pose, if one component has `min_weight` of the whole.
+    pub(super) fn unimodal(&self, min_weight: f64) -> Option<&Gaussian<Pose2<f64>>> {
+        unimodal(self.state.as_ref()?, min_weight / (1.0 - self.uniform))
     }
 
-    /// After the robot has moved. [Gross et al. 2005, Eq. 1]
-    pub(super) fn moved(
-        &self,
-        increment: &Pose2<f64>,
-        noise: &OdometryNoise,
-    ) -> Result<Self, AppearanceMapError> {
+    /// After an odometry increment. [Gross et al. 2005, Eq. 1]
+    pub(super) fn predicted<M>(&self, increment: &Pose2<f64>, motion: &M) -> Result<Self, AppearanceMapError>
+    where
+        M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
+    {
         let Some(state) = &self.state else { return Ok(self.clone()) };
-        let moved = state.log_weights().iter().zip(state.components()).map(|(log_weight, component)| {
-            propagate(component, increment, noise).map(|moved| (*log_weight, moved))
-        });
-        let moved: Result<Vec<_>, AppearanceMapError> = moved.collect();
-        Ok(Self { state: Some(GaussianMixture::from_log_weights(moved?)?), ..*self })
+        let moved = state
+            .log_weights()
+            .iter()
+            .zip(state.components())
+            .map(|(log_weight, component)| Ok((*log_weight, propagate(component, increment, motion)?)));
+        let moved = moved.collect::<Result<Vec<_>, AppearanceMapError>>()?;
+        Ok(Self { state: Some(GaussianMixture::from_log_weights(moved)?), ..*self })
+    }
+
+    /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2-8]
+    ///
+    /// The uniform component has at least the prior probability of a kidnapping, so that a source can contradict the prediction.
+    pub(super) fn fused(
+        &self,
+        view: Option<&PoseLikelihood>,
+        sources: &[&dyn PoseSource],
+        area: f64,
+        params: &LocalizerParams,
+    ) -> Result<Self, AppearanceMapError> {
+        let is_evidence = params.fusion.mixture_weighting == MixtureWeighting::Evidence;
+        let prior = if is_evidence { params.relocalization.probability(1.0) } else { 0.0 };
+        let mut uniform =
+            UniformComponent { weight: self.uniform.max(prior), volume: area * std::f64::consts::TAU };
+        let mut fused = self.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
+        for hypothesis in &mut fused {
+            hypothesis.weight *= 1.0 - uniform.weight;
+        }
+        if let Some(likelihood) = view {
+            (fused, uniform) = fuse(&fused, uniform, likelihood, &params.fusion)?;
+        }
+        for source in sources {
+            let hypotheses = source.hypotheses(self.state.as_ref())?;
+            let likelihood = if is_evidence {
+                PoseLikelihood::of_probabilities(hypotheses, &uniform)
+            } else {
+                PoseLikelihood { peaks: hypotheses, floor: 0.0 }
+            };
+            (fused, uniform) = fuse(&fused, uniform, &likelihood, &params.fusion)?;
+        }
+        if fused.iter().all(|hypothesis| hypothesis.weight == 0.0) {
+            return Ok(Self { state: None, uniform: 1.0 });
+        }
+        let simplified = simplify(fused, &params.simplify)?;
+        let total: f64 = simplified.iter().map(|hypothesis| hypothesis.weight).sum();
+        let state = Some(PoseHypothesis::into_mixture(simplified)?);
+        Ok(Self { state, uniform: uniform.weight / (uniform.weight + total) })
     }
 }

@@ -1,30 +1,17 @@
-//! The whole: predict with odometry, update with views, learn what was seen.
+//! Localization and mapping at once, step by step: predict, match the view, fuse and simplify, test for a kidnapping, learn.
+//! [Gross et al. 2005, Sec. 2]
 
-mod anywhere;
 mod appearance_localizer;
 mod belief;
-mod breaks;
-mod compass;
-mod contest;
-mod doubt;
-mod fit;
-mod journey;
-mod learning;
-mod observe;
+mod learn;
+mod match_view;
 mod outcome;
 mod params;
-mod relocation;
-mod rival;
-mod running_share;
-mod scale_learner;
-mod smooth;
+mod pose_history;
+mod relocalize;
 mod start;
-mod survey;
-mod trail;
 
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
-pub use params::{Learning, LocalizerParams, Observation};
-pub use relocation::{Proof, RelocationParams};
-pub use smooth::{Motion, smooth};
+pub use params::{Learning, LocalizerParams, Observation, Recovery};
 pub use start::Start;

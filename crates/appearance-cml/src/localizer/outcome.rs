@@ -3,29 +3,39 @@ use wayfix_gaussian_core::Gaussian;
 
 use crate::ReferenceId;
 
-/// Something that a user of the localizer may want to hear of.
+/// An event of the localizer.
+///
+/// ```
+/// use wayfix_appearance_cml::{Event, ReferenceId};
+/// assert_ne!(Event::NewReference(ReferenceId(3)), Event::Forgotten(ReferenceId(3)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
     /// A view has become a reference.
     NewReference(ReferenceId),
-    /// A reference is no longer in the map.
+    /// A reference was removed from the map.
     Forgotten(ReferenceId),
-    /// The state was one place and is several, or too wide.
+    /// The belief is no longer unimodal.
     Lost,
-    /// The state is one place, and was not.
+    /// The belief is unimodal again.
     Found,
-    /// The state is one place, but not the one where odometry would have it: the robot was carried, or had been lost unnoticed.
+    /// The most probable pose contradicts odometry: the robot was kidnapped, or the estimate was wrong before.
     Relocated,
 }
 
-/// What one view has done.
+/// The result of one view.
+///
+/// ```
+/// let nothing = wayfix_appearance_cml::UpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0 };
+/// assert!(nothing.estimate.is_none());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct UpdateOutcome {
-    /// In the order in which they happened.
+    /// The events in order.
     pub events: Vec<Event>,
-    /// The pose, when the state is one place.
+    /// The pose, if the belief is unimodal.
     pub estimate: Option<Gaussian<Pose2<f64>>>,
-    /// How many places of the map looked like the view.
-    pub n_sightings: usize,
+    /// Number of places that match the view.
+    pub n_detections: usize,
 }

@@ -1,34 +1,65 @@
-use super::RelocationParams;
+use wayfix_integrity::RelocalizationParams;
+
 use crate::{
-    AppearanceMapError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise,
-    UnimodalParams, check,
+    AppearanceMapError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise, check,
 };
 
-/// What happens to the map while the robot drives.
+/// Whether the map changes while the robot drives.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::Learning::default(), wayfix_appearance_cml::Learning::Adapting);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Learning {
-    /// Nothing: the map stays as it is.
+    /// The map stays as it is.
     Static,
-    /// It is learned and forgotten; [`ForgettingMode`](crate::ForgettingMode) says how.
+    /// The map learns and forgets ([`ForgettingMode`](crate::ForgettingMode)).
     #[default]
     Adapting,
 }
 
-/// How the places that look like the view become hypotheses of the pose.
+/// How matching places become hypotheses of the pose.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::Observation::default(), wayfix_appearance_cml::Observation::Interpolation);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Observation {
-    /// All of them, weighted, as printed.
+    /// The weighted sum of all matching places of the map. [Gross et al. 2005, Sec. 2.2]
     Superposition,
-    /// One for each group of neighbours, interpolated between them.
+    /// One hypothesis for each group of neighbours, interpolated between them ([`interpolate`](crate::interpolate)).
     #[default]
     Interpolation,
 }
 
-/// Everything that can be set.
+/// Whether the localizer tests for a kidnapping.
+///
+/// ```
+/// use wayfix_appearance_cml::{LocalizerParams, Recovery};
+/// let never_relocalized = LocalizerParams { recovery: Recovery::Off, ..LocalizerParams::default() };
+/// assert!(never_relocalized.validate().is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Recovery {
+    /// No test.
+    Off,
+    /// The sequential test of [`RelocalizationTest`](wayfix_integrity::RelocalizationTest).
+    #[default]
+    SequentialTest,
+}
+
+/// Parameters of the localizer.
+///
+/// ```
+/// use wayfix_appearance_cml::{LocalizerParams, Recovery};
+/// assert_eq!(LocalizerParams::as_published().recovery, Recovery::Off);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -37,38 +68,26 @@ pub enum Observation {
     serde(default, deny_unknown_fields)
 )]
 pub struct LocalizerParams {
-    /// How odometry errs.
+    /// Noise of the odometry.
     pub odometry: OdometryNoise,
-    /// How the places that look like the view are read. Default [`Observation::Interpolation`].
+    /// Default [`Observation::Interpolation`].
     pub observation: Observation,
-    /// References of the whole map that a view is compared with at most, beside those where the robot is thought to be. Default 40.
-    pub most_matches: usize,
     /// How odometry, view and other sources are fused.
     pub fusion: FusionParams,
     /// How the mixture is kept small.
     pub simplify: MixtureReductionParams,
-    /// When the robot doubts where it is, and how it finds itself again.
-    pub relocation: RelocationParams,
-    /// When the mixture counts as one place.
-    pub unimodal: UnimodalParams,
+    /// Minimum weight of the heaviest component of a unimodal belief. Default 0.8: four to one against all other poses.
+    pub unimodal_weight: f64,
+    /// Default [`Recovery::SequentialTest`].
+    pub recovery: Recovery,
+    /// Rates and distances of the test.
+    pub relocalization: RelocalizationParams,
     /// Default [`Learning::Adapting`].
     pub learning: Learning,
     /// How the map learns.
     pub map: AppearanceMapParams,
-    /// Views by which learning lags behind, so that a pose is not confirmed by what it has just taught. Default 10.
-    pub delay: usize,
-    /// Views by which learning lags behind at most where the robot, in a part of the map that was surveyed, has become less sure of where it is: the next place
-    /// that it recognizes corrects them first. 0 to wait for no such place, as printed. Default 60.
-    pub patience: usize,
-    /// Views that wait at most for the state to become one place, and while a belief that was ousted goes along; older ones are not learned. Default 400: twice
-    /// [`RelocationParams::ousted_way`] at four views a metre.
-    pub longest_wait: usize,
-    /// Views of the way behind the robot over which a correction is spread where surveyed references lie around it, and with it the references made there; 0
-    /// leaves them where they are, as printed. Default 2000: half a kilometre.
-    pub memory: usize,
-    /// Distance to its neighbours along the way, as a multiple of the distance of successive views, beyond which a view is taken for an
-    /// outlier (somebody passes) and not learned; `None` learns every view. Default 1.6.
-    pub corroboration: Option<f64>,
+    /// Whether views that differ from both neighbours along the path are not learned: a person passes by. Default true.
+    pub reject_outliers: bool,
 }
 
 impl Default for LocalizerParams {
@@ -76,51 +95,42 @@ impl Default for LocalizerParams {
         Self {
             odometry: OdometryNoise::default(),
             observation: Observation::default(),
-            most_matches: 40,
             fusion: FusionParams::default(),
             simplify: MixtureReductionParams::default(),
-            relocation: RelocationParams::default(),
-            unimodal: UnimodalParams::default(),
+            unimodal_weight: 0.8,
+            recovery: Recovery::default(),
+            relocalization: RelocalizationParams::default(),
             learning: Learning::default(),
             map: AppearanceMapParams::default(),
-            delay: 10,
-            patience: 60,
-            longest_wait: 400,
-            memory: 2000,
-            corroboration: Some(1.6),
+            reject_outliers: true,
         }
     }
 }
 
 impl LocalizerParams {
-    /// The method as printed: superposition, covariance intersection by Eqs. 3-8, every view learned as it is.
-    pub fn printed() -> Self {
+    /// The method as published, without any addition: superposition, covariance intersection by Eqs. 3-8, no test for a kidnapping, every view
+    /// learned.
+    pub fn as_published() -> Self {
         Self {
             observation: Observation::Superposition,
             fusion: FusionParams::as_published(),
-            simplify: MixtureReductionParams { min_weight: 0.005, ..MixtureReductionParams::default() },
+            recovery: Recovery::Off,
             map: AppearanceMapParams::as_published(),
-            relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
-            corroboration: None,
-            patience: 0,
-            memory: 0,
+            reject_outliers: false,
             ..Self::default()
         }
     }
 
-    /// Whether the numbers have a meaning.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         self.odometry.validate()?;
-        check::count("matches", self.most_matches)?;
         self.fusion.validate()?;
         self.simplify.validate()?;
-        self.relocation.validate()?;
-        self.unimodal.validate()?;
-        self.map.validate()?;
-        check::count("longest wait (views)", self.longest_wait)?;
-        check::positive("corroboration", self.corroboration.unwrap_or(1.0))
+        check::share("unimodal_weight", self.unimodal_weight)?;
+        self.relocalization.validate()?;
+        self.map.validate()
     }
 }

@@ -1,14 +1,14 @@
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
 use super::{AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDistanceScale, similarity};
 use crate::{AppearanceMapError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
 
-/// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
+/// The appearance map: reference views, and the poses that each was seen from. [Gross et al. 2005, Eqs. 9-10]
 ///
 /// Plain data: [`search`](Self::search), [`references`](Self::references) and [`scale`](Self::scale) are all there is, and
 /// [`from_parts`](Self::from_parts) takes them back.
@@ -24,7 +24,7 @@ use crate::{AppearanceMapError, Descriptor, LinearSearch, ReferenceId, Reference
 /// # }
 /// use nalgebra::Vector3;
 /// use wayfix_appearance_cml::{AppearanceMap, AppearanceMapParams};
-/// use wayfix_estimation_traits::{LieGroup, Pose2};
+/// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let mut map: AppearanceMap<Brightness> = AppearanceMap::default();
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.05))?;
@@ -89,15 +89,15 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     pub fn search(&self) -> &S {
         &self.search
     }
-    /// Where each was seen.
+    /// The places of each view.
     pub fn references(&self) -> &BTreeMap<ReferenceId, ReferenceView> {
         &self.references
     }
-    /// Where one was seen.
+    /// The places of one view.
     pub fn reference(&self, id: ReferenceId) -> Option<&ReferenceView> {
         self.references.get(&id)
     }
-    /// How views change with the way.
+    /// How views change with distance.
     pub fn scale(&self) -> &ViewDistanceScale {
         &self.scale
     }
@@ -109,26 +109,31 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     pub fn next_id(&self) -> u32 {
         self.next
     }
-    /// How many references.
+    /// Number of references.
     pub fn len(&self) -> usize {
         self.references.len()
     }
-    /// Whether nothing is learned yet.
+    /// Whether the map is empty.
     pub fn is_empty(&self) -> bool {
         self.references.is_empty()
     }
 
-    /// $`E^{max}`$: given, or found from the data.
+    /// $`E^{max}`$.
     pub fn match_limit(&self, params: &AppearanceMapParams) -> f64 {
-        params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_limit_fraction))
+        self.scale.match_limit(params.match_limit_fraction)
     }
 
-    /// How far apart two views may be taken and still match, m.
+    /// Maximum distance between the places of two matching views, m.
     pub fn match_radius(&self, params: &AppearanceMapParams) -> f64 {
         self.scale.to_meters(self.match_limit(params))
     }
 
-    /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
+    /// The area with references, m²; at least 1.
+    pub fn area(&self) -> f64 {
+        self.grid.area()
+    }
+
+    /// Inserts the view as a reference of this place, for a map that is taught with known poses.
     ///
     /// # Errors
     /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left.
@@ -140,37 +145,35 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         )
     }
 
-    /// Places near the components of `belief` whose references are nearer to the view than `limit`.
-    pub fn place_matches_near(
+    /// Places within the gate of the components of `belief` whose references match the view, and those of the `n_anywhere` most similar
+    /// references of the whole map.
+    pub fn place_matches(
         &self,
         view: &D,
         belief: &[Gaussian<Pose2<f64>>],
-        limit: f64,
+        n_anywhere: usize,
+        (params, gate): (&AppearanceMapParams, f64),
     ) -> Vec<PlaceMatch> {
-        let near = belief.iter().flat_map(|component| self.compare_near(view, component, limit));
-        self.places_of(once_each(near.collect()), limit)
+        let limit = self.match_limit(params);
+        let mut matches =
+            if n_anywhere > 0 { self.search.nearest_within(view, n_anywhere, limit) } else { Vec::new() };
+        for component in belief {
+            let radius = self.search_radius(component, params, gate).min(self.scale.far_distance());
+            matches.extend(self.compare_within(view, component, radius));
+        }
+        matches.retain(|m| m.comparison.distance < limit);
+        matches.sort_by_key(|m| m.id);
+        matches.dedup_by_key(|m| m.id);
+        self.places_of(matches, limit)
     }
 
-    /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view, all nearer than `limit`.
-    pub fn place_matches_anywhere(
-        &self,
-        view: &D,
-        belief: &[Gaussian<Pose2<f64>>],
-        most: usize,
-        limit: f64,
-    ) -> Vec<PlaceMatch> {
-        let mut matches = self.search.nearest_within(view, most, limit);
-        matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
-        self.places_of(once_each(matches), limit)
-    }
-
-    /// All places of all references that look like the view, as printed.
+    /// All places of all matching references of the map. [Gross et al. 2005, Sec. 2.2]
     pub fn all_place_matches(&self, view: &D, params: &AppearanceMapParams) -> Vec<PlaceMatch> {
         let limit = self.match_limit(params);
         self.places_of(self.search.within(view, limit), limit)
     }
 
-    fn places_of(&self, matches: Vec<ReferenceMatch>, limit: f64) -> Vec<PlaceMatch> {
+    pub(super) fn places_of(&self, matches: Vec<ReferenceMatch>, limit: f64) -> Vec<PlaceMatch> {
         let places = |m: &ReferenceMatch| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
             let similarity = similarity(m.comparison.distance, limit);
@@ -179,14 +182,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         matches.iter().flat_map(places).collect()
     }
 
-    /// How the view compares with the references near a belief, those below the limit.
-    fn compare_near(&self, view: &D, near: &Gaussian<Pose2<f64>>, limit: f64) -> Vec<ReferenceMatch> {
-        let mut matches = self.compare_within(view, near, self.search_radius(near, limit));
-        matches.retain(|m| m.comparison.distance < limit);
-        matches
-    }
-
-    /// How the view compares with all references within `radius` of a belief.
+    /// Compares the view with all references within `radius` of a belief.
     pub(super) fn compare_within(
         &self,
         view: &D,
@@ -199,10 +195,14 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.grid.near(&near.mean().translation, radius).into_iter().filter_map(compare).collect()
     }
 
-    /// How far from a belief views may match: as far as the limit reaches, and the belief errs.
-    pub(super) fn search_radius(&self, near: &Gaussian<Pose2<f64>>, limit: f64) -> f64 {
-        let sigmas = near.sigmas();
-        self.scale.to_meters(limit) + GATE_SIGMAS * sigmas.x.max(sigmas.y).min(MOST_SIGMA)
+    /// Distance from the mean of a belief at which references may match, m: the match radius, and the error of the belief within the gate.
+    pub(crate) fn search_radius(
+        &self,
+        belief: &Gaussian<Pose2<f64>>,
+        params: &AppearanceMapParams,
+        gate: f64,
+    ) -> f64 {
+        self.match_radius(params) + gate.sqrt() * belief.sigmas().xy().max()
     }
 
     pub(super) fn insert(
@@ -219,7 +219,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(id)
     }
 
-    /// Puts new places in the stead of old ones.
+    /// Replaces the places of a reference.
     pub(super) fn replace(&mut self, id: ReferenceId, reference: ReferenceView) {
         if let Some(old) = self.references.get_mut(&id) {
             for place in &old.places {
@@ -230,38 +230,12 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         }
     }
 
-    /// Carries the places of a reference along with the pose that it was made at, from `before` to `after`.
-    pub(crate) fn revise(&mut self, id: ReferenceId, before: &Pose2<f64>, after: &Gaussian<Pose2<f64>>) {
-        let Some(reference) = self.references.get(&id) else { return };
-        let mut reference = reference.clone();
-        for place in &mut reference.places {
-            let mean = after.mean().compose(&before.inverse().compose(place.gaussian.mean()));
-            let learned = after.in_chart_at(&mean).map(|seen| *seen.covariance());
-            let narrower =
-                learned.ok().filter(|c| c.determinant() < place.gaussian.covariance().determinant());
-            let covariance = narrower.unwrap_or(*place.gaussian.covariance());
-            place.gaussian = Gaussian::from_parts_unchecked(mean, covariance);
-        }
-        self.replace(id, reference);
-    }
-
     pub(super) fn remove(&mut self, id: ReferenceId) {
         self.replace(id, ReferenceView::default());
         self.references.remove(&id);
         self.search.remove(id);
     }
 }
-
-fn once_each(mut matches: Vec<ReferenceMatch>) -> Vec<ReferenceMatch> {
-    matches.sort_by_key(|m| m.id);
-    matches.dedup_by_key(|m| m.id);
-    matches
-}
-
-/// σ of a belief within which references are compared one by one.
-const GATE_SIGMAS: f64 = 3.0;
-/// σ beyond which a belief says nothing that the search of the whole map does not say better, m.
-const MOST_SIGMA: f64 = 1.0;
 
 fn enter(grid: &mut Grid, id: ReferenceId, reference: &ReferenceView) {
     for place in &reference.places {

@@ -1,31 +1,83 @@
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Pose2, wrap_angle};
+use wayfix_gaussian_core::Gaussian;
 
-use super::{AppearanceMap, PlaceComponent};
+use super::interpolate::MAX_TURN;
+use super::{AppearanceMap, AppearanceMapParams, PlaceComponent};
 use crate::{Descriptor, ReferenceId, ReferenceSearch};
 
-/// From how many steps on a place is far.
-const FAR_STEPS: f64 = 20.0;
-/// References of far places that a view is measured against: the best of the half dozen that are near a wrong pose is nearer than all of them once in
-/// ten views or more seldom.
-const N_FAR: usize = 64;
+/// Number of references of the whole map that a view is compared with. With the half dozen references of one place, a view of another place
+/// recognizes it in one case of ten.
+pub(crate) const N_FAR: usize = 64;
+
+/// A view compared with the references of one place and of far places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlaceTest {
+    /// Whether a reference of the place, with its heading, is nearer to the view than all those of far places.
+    pub(crate) is_recognized: bool,
+    /// Probability of that in a view of another place: $`k/(k+n)`$, because there the ranks of $`k + n`$ references are exchangeable.
+    pub(crate) chance: f64,
+}
 
 impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
-    /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
-    pub(crate) fn distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
-        // Multiples of the golden section spread evenly over the numbers.
-        let start = (u64::from(turn.wrapping_mul(0x9E37_79B9)) * u64::from(self.next_id())) >> 32;
-        let (id, reference) = self.references().range(ReferenceId(start as u32)..).next()?;
-        let far = FAR_STEPS * self.scale().step();
-        let is_far =
-            |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > far;
-        let reference = reference.places.iter().all(is_far).then(|| self.search().get(*id)).flatten()?;
-        Some(view.compare(reference).distance)
+    /// Differences of the view from `n` references, spread evenly over the map. They are others with each `turn`.
+    pub(crate) fn sample(&self, view: &D, turn: u32, n: usize) -> Vec<(ReferenceId, f64)> {
+        // The bit-reversed numbers of van der Corput spread any stretch of successive numbers evenly.
+        let id = |k: usize| {
+            let reversed = turn.wrapping_mul(n as u32).wrapping_add(k as u32).reverse_bits();
+            ReferenceId(((u64::from(reversed) * u64::from(self.next_id())) >> u32::BITS) as u32)
+        };
+        let reference = |k: usize| self.references().range(id(k)..).next().map(|(id, _)| *id);
+        let difference = |id: ReferenceId| Some((id, view.compare(self.search().get(id)?).distance));
+        (0..n).filter_map(reference).filter_map(difference).collect()
     }
 
-    /// The least distance of the view to [`N_FAR`] references of far places, others with each `turn`; `None` when hardly half of them are far.
-    pub(crate) fn least_distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
-        let turns = (0..N_FAR as u32).map(|k| turn.wrapping_mul(N_FAR as u32).wrapping_add(k));
-        let far: Vec<f64> = turns.filter_map(|turn| self.distance_to_far(view, pose, turn)).collect();
-        (2 * far.len() >= N_FAR).then(|| far.into_iter().fold(f64::INFINITY, f64::min))
+    /// Those of a [`sample`](Self::sample) whose places are all far from `pose`.
+    pub(crate) fn far_from<'a>(
+        &'a self,
+        pose: &'a Pose2<f64>,
+        sample: &'a [(ReferenceId, f64)],
+    ) -> impl Iterator<Item = f64> + 'a {
+        let far = self.scale().far_distance();
+        let is_far = move |place: &PlaceComponent| distance(place, pose) > far;
+        let are_far = move |id: ReferenceId| self.reference(id).is_some_and(|r| r.places.iter().all(is_far));
+        sample.iter().filter(move |(id, _)| are_far(*id)).map(|(_, difference)| *difference)
     }
+
+    /// Tests the view at a hypothesis; `None` if the map knows nothing there or far away, or the pose is not certain enough to tell.
+    ///
+    /// The references of the hypothesis lie within half of the match radius.
+    pub(crate) fn test_place(
+        &self,
+        view: &D,
+        hypothesis: &Gaussian<Pose2<f64>>,
+        sample: &[(ReferenceId, f64)],
+        params: &AppearanceMapParams,
+    ) -> Option<PlaceTest> {
+        let at = hypothesis.mean();
+        let (mut n_far, mut nearest_far) = (0, f64::INFINITY);
+        for difference in self.far_from(at, sample) {
+            (n_far, nearest_far) = (n_far + 1, nearest_far.min(difference));
+        }
+        let radius = self.match_radius(params) / 2.0;
+        let sigma = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm();
+        let own = sigma(hypothesis);
+        let is_there = |place: &PlaceComponent| {
+            distance(place, at) <= radius && own.hypot(sigma(&place.gaussian)) <= radius
+        };
+        let (mut n_near, mut is_recognized) = (0, false);
+        for matched in self.compare_within(view, hypothesis, radius) {
+            let Some(reference) = self.reference(matched.id) else { continue };
+            let Some(place) = reference.places.iter().find(|place| is_there(place)) else { continue };
+            let heading = place.gaussian.mean().heading() + matched.comparison.rotation;
+            let is_turned = wrap_angle(heading - at.heading()).abs() > MAX_TURN + 2.0 * hypothesis.sigmas().z;
+            is_recognized |= matched.comparison.distance < nearest_far && !is_turned;
+            n_near += 1;
+        }
+        let chance = f64::from(n_near) / f64::from(n_near + n_far);
+        (n_near > 0 && n_far > 0).then_some(PlaceTest { is_recognized, chance })
+    }
+}
+
+fn distance(place: &PlaceComponent, pose: &Pose2<f64>) -> f64 {
+    (place.gaussian.mean().translation - pose.translation).norm()
 }

@@ -4,23 +4,18 @@ use nalgebra::Vector2;
 
 use crate::ReferenceId;
 
-/// Which references have places near a point of the plane.
+/// The references with places near a point of the plane, in cells of 1 m².
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Grid {
     cells: BTreeMap<(i64, i64), Vec<ReferenceId>>,
 }
-
-/// Edge of a cell, m.
-const EDGE: f64 = 0.5;
-/// Cells a query may walk in each direction; a wider one goes over the occupied cells instead.
-const MOST_STEPS: i64 = 64;
 
 impl Grid {
     pub(super) fn insert(&mut self, id: ReferenceId, at: &Vector2<f64>) {
         self.cells.entry(cell(at)).or_default().push(id);
     }
 
-    /// Takes out one entry of `id` at this point.
+    /// Removes one entry of `id` at this point.
     pub(super) fn remove(&mut self, id: ReferenceId, at: &Vector2<f64>) {
         let key = cell(at);
         if let Some(ids) = self.cells.get_mut(&key) {
@@ -33,15 +28,21 @@ impl Grid {
         }
     }
 
-    /// All references with a place that may be within `radius` of the point, each once, in order of their numbers.
+    /// The area with places, m²; at least one cell.
+    pub(super) fn area(&self) -> f64 {
+        self.cells.len().max(1) as f64
+    }
+
+    /// All references with a place that may be within `radius` of the point, each once, in the order of their numbers.
     pub(super) fn near(&self, at: &Vector2<f64>, radius: f64) -> Vec<ReferenceId> {
         let reach = Vector2::repeat(radius);
         let (low, high) = (cell(&(at - reach)), cell(&(at + reach)));
         let mut found: Vec<ReferenceId> = Vec::new();
-        if high.0.saturating_sub(low.0) > MOST_STEPS || high.1.saturating_sub(low.1) > MOST_STEPS {
-            let inside =
+        // A range of more columns than occupied cells is cheaper to search cell by cell.
+        if high.0.saturating_sub(low.0) as u64 > self.cells.len() as u64 {
+            let is_inside =
                 |key: &(i64, i64)| (low.0..=high.0).contains(&key.0) && (low.1..=high.1).contains(&key.1);
-            found.extend(self.cells.iter().filter(|(key, _)| inside(key)).flat_map(|(_, ids)| ids));
+            found.extend(self.cells.iter().filter(|(key, _)| is_inside(key)).flat_map(|(_, ids)| ids));
         } else {
             for x in low.0..=high.0 {
                 found.extend(self.cells.range((x, low.1)..=(x, high.1)).flat_map(|(_, ids)| ids));
@@ -55,5 +56,5 @@ impl Grid {
 
 /// Saturates far outside of any world.
 fn cell(at: &Vector2<f64>) -> (i64, i64) {
-    ((at.x / EDGE).floor() as i64, (at.y / EDGE).floor() as i64)
+    (at.x.floor() as i64, at.y.floor() as i64)
 }

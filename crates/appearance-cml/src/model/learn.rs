@@ -8,33 +8,34 @@ use super::merge::merge_places;
 use super::residual::Residual;
 use super::weigh::{weight_when_missed, weight_when_seen};
 use super::{
-    AppearanceMap, AppearanceMapParams, ForgettingMode, PlaceComponent, PlaceMatch, PlaceUpdateRule,
-    ReferenceView, interpolate,
+    AppearanceMap, AppearanceMapParams, ForgettingMode, PlaceComponent, PlaceUpdateRule, ReferenceView,
+    interpolate,
 };
 use crate::{
     AppearanceMapError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared,
     similarity,
 };
 
-/// How far around the robot references are forgotten that it does not see, in parts of the distance at which views still match.
-const FORGOTTEN_SHARE: f64 = 2.0 / 3.0;
-
-/// What one view changed in the map.
+/// The changes of the map by one view.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::MapUpdate::default().inserted, None);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct MapUpdate {
-    /// The view is a reference now.
+    /// The new reference, if the view became one.
     pub inserted: Option<ReferenceId>,
-    /// References that were forgotten.
+    /// References that were removed.
     pub forgotten: Vec<ReferenceId>,
-    /// How many references the view was like.
+    /// Number of references that matched.
     pub matched: usize,
 }
 
 impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Learns that the view was seen from this pose. [Gross et al. 2005, Sec. 2.3]
     ///
-    /// The three steps of the paper: insertion of a new reference where none looks like the view; update of the places of those that do;
-    /// adaptation of the weights, by which references are kept or forgotten.
+    /// The three steps of the paper: insertion of a new reference if none matches; update of the places of matching references;
+    /// adaptation of the weights. `gate` is [`FusionParams::gate`](crate::FusionParams::gate).
     ///
     /// # Errors
     /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left;
@@ -44,10 +45,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         view: D,
         pose: &Gaussian<Pose2<f64>>,
         params: &AppearanceMapParams,
+        gate: f64,
     ) -> Result<MapUpdate, AppearanceMapError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
-        let radius = self.search_radius(pose, limit).max(params.active_forgetting.radius.unwrap_or(0.0));
+        let radius = self.search_radius(pose, params, gate).min(self.scale().far_distance());
         let compared = self.compare_within(&view, pose, radius);
         let (here, missed): (Vec<ReferenceMatch>, Vec<ReferenceMatch>) =
             compared.into_iter().partition(|m| m.comparison.distance < limit);
@@ -56,11 +58,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             PlaceUpdateRule::Residual => here,
         };
         let novel = self.is_novel(&seen, limit, params);
-        let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params))?;
-        self.weigh_seen(&mut changed, &seen, pose, (limit, params))?;
+        let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params, gate))?;
+        self.weigh_seen(&mut changed, &seen, pose, (limit, params, gate))?;
         if params.forgetting_mode == ForgettingMode::Active {
             let elsewhere = missed.iter().filter(|m| !changed.contains_key(&m.id)).map(|m| m.id).collect();
-            self.weigh_missed(&mut changed, elsewhere, pose, (limit, params));
+            self.weigh_missed(&mut changed, elsewhere, pose, params);
         }
         let matched = seen.len();
         let inserted = if novel { Some(self.insert(view, first_seen(pose, params))?) } else { None };
@@ -69,31 +71,29 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(MapUpdate { inserted, forgotten, matched })
     }
 
-    /// Step 1: nothing that is known looks like the view.
+    /// Step 1: no reference is nearer than $`E^{max}`$, or, with [`PlaceUpdateRule::Residual`], than successive views are to one another.
     fn is_novel(&self, seen: &[ReferenceMatch], limit: f64, params: &AppearanceMapParams) -> bool {
         let insertion = match params.place_update {
             PlaceUpdateRule::Pose => limit,
-            PlaceUpdateRule::Residual => {
-                limit.min(params.insertion_distance_factor * self.scale().step_distance())
-            }
+            PlaceUpdateRule::Residual => limit.min(self.scale().step_distance()),
         };
         !seen.iter().any(|m| m.comparison.distance < insertion)
     }
 
-    /// Step 2: a Gaussian is added to each reference that looks like the view. [Gross et al. 2005, Eqs. 11-14]
+    /// Step 2: adds a Gaussian to each matching reference. [Gross et al. 2005, Eqs. 11-14]
     fn with_places_updated(
         &self,
         seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
         novel: bool,
-        (limit, params): (f64, &AppearanceMapParams),
+        (limit, params, gate): (f64, &AppearanceMapParams, f64),
     ) -> Result<BTreeMap<ReferenceId, ReferenceView>, AppearanceMapError> {
         // A new reference is as similar to its view as can be, and takes its share of the counts.
         let own = if novel { 1.0 } else { 0.0 };
         let total: f64 = own + seen.iter().map(|m| similarity(m.comparison.distance, limit)).sum::<f64>();
         let residual = match params.place_update {
             PlaceUpdateRule::Pose => None,
-            PlaceUpdateRule::Residual => self.residual(seen, pose, (limit, params))?,
+            PlaceUpdateRule::Residual => self.residual(seen, pose, (limit, gate))?,
         };
         let mut changed = BTreeMap::new();
         for matched in seen {
@@ -104,7 +104,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
                 (PlaceUpdateRule::Pose, _) => {
                     let seen_from = turned(pose, -matched.comparison.rotation);
                     reference.places.push(PlaceComponent { weight: 0.0, count, gaussian: seen_from });
-                    merge_places(&mut reference.places, params)?;
+                    merge_places(&mut reference.places, params, gate)?;
                 }
                 (PlaceUpdateRule::Residual, Some(residual)) => {
                     for place in &mut reference.places {
@@ -118,27 +118,16 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(changed)
     }
 
-    /// By how much the places seen put the robot elsewhere than it is; nothing when they mean another place.
+    /// The pose minus the pose that the matching places tell; `None` if they mean another place.
     fn residual(
         &self,
         seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &AppearanceMapParams),
+        (limit, gate): (f64, f64),
     ) -> Result<Option<Residual>, AppearanceMapError> {
-        let place_matches: Vec<PlaceMatch> = seen
-            .iter()
-            .flat_map(|m| {
-                let places = self.reference(m.id).map_or(&[][..], |reference| &reference.places);
-                let similarity = similarity(m.comparison.distance, limit);
-                places
-                    .iter()
-                    .enumerate()
-                    .map(|place| PlaceMatch::new(*m, place, similarity))
-                    .collect::<Vec<_>>()
-            })
-            .collect();
+        let place_matches = self.places_of(seen.to_vec(), limit);
         let mut nearest = None;
-        let mut least = params.place_gate;
+        let mut least = gate;
         for hypothesis in interpolate(&place_matches, std::slice::from_ref(pose), self.scale())? {
             let squared = separation_squared(pose, &hypothesis.gaussian)?;
             if squared < least {
@@ -153,47 +142,43 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(nearest)
     }
 
-    /// Step 3, references that look like the view.
+    /// Step 3, matching references. [Gross et al. 2005, Eqs. 15-17]
     fn weigh_seen(
         &self,
         changed: &mut BTreeMap<ReferenceId, ReferenceView>,
         seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &AppearanceMapParams),
+        (limit, params, gate): (f64, &AppearanceMapParams, f64),
     ) -> Result<(), AppearanceMapError> {
         for matched in seen {
             let Some(reference) = changed.get_mut(&matched.id) else { continue };
             for place in &mut reference.places {
-                place.weight = weight_when_seen(place, matched, pose, (limit, self.scale(), params))?;
+                place.weight = weight_when_seen(place, matched, pose, (limit, gate), (self.scale(), params))?;
             }
         }
         Ok(())
     }
 
-    /// Step 3, references of this place that do not.
+    /// Step 3, references of this place that do not match. [Gross et al. 2005, Eqs. 18-19]
     fn weigh_missed(
         &self,
         changed: &mut BTreeMap<ReferenceId, ReferenceView>,
         missed: Vec<ReferenceId>,
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &AppearanceMapParams),
+        params: &AppearanceMapParams,
     ) {
-        let radius = params
-            .active_forgetting
-            .radius
-            .unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().to_meters(limit));
+        let radius = self.match_radius(params);
         for id in missed {
             let Some(reference) = self.reference(id) else { continue };
             let mut reference = reference.clone();
             for place in &mut reference.places {
-                place.weight =
-                    weight_when_missed(place, pose, radius, (self.scale(), &params.active_forgetting));
+                place.weight = weight_when_missed(place, pose, radius, (self.scale(), params));
             }
             changed.insert(id, reference);
         }
     }
 
-    /// Writes what has changed; places that have become too light go, and references without a place.
+    /// Writes the changes. Removes light places, and references without places.
     fn commit(&mut self, changed: BTreeMap<ReferenceId, ReferenceView>, least: f64) -> Vec<ReferenceId> {
         let mut forgotten = Vec::new();
         for (id, mut reference) in changed {
@@ -208,7 +193,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         forgotten
     }
 
-    /// Bounds the size: the least important go, the oldest among equals, but not the one that came last.
+    /// Bounds the size: removes the least important references, the oldest among equals, but not the newest.
     fn shrink(&mut self, most: usize, newest: Option<ReferenceId>) -> Vec<ReferenceId> {
         let mut removed = Vec::new();
         while self.len() > most {
@@ -222,7 +207,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 }
 
-/// A new place has weight 0 and is then seen at distance 0: Eq. 16 leaves the learning rate.
+/// A new place has weight 0 and then matches at distance 0: Eq. 16 gives the learning rate.
 fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &AppearanceMapParams) -> ReferenceView {
     let weight = params.learning_rate.max(params.min_weight);
     ReferenceView { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }

@@ -3,14 +3,15 @@ use wayfix_gaussian_core::{GaussianError, moment_matched};
 use super::{AppearanceMapParams, PlaceComponent};
 use crate::{AppearanceMapError, separation_squared};
 
-/// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
+/// Merges the newest place into the nearest other within the gate. [Gross et al. 2005, Eq. 12]
 pub(super) fn merge_places(
     places: &mut Vec<PlaceComponent>,
     params: &AppearanceMapParams,
+    gate: f64,
 ) -> Result<(), AppearanceMapError> {
     let Some(newest) = places.pop() else { return Ok(()) };
     let mut nearest = None;
-    let mut least = params.merge_distance;
+    let mut least = gate;
     for (index, place) in places.iter().enumerate() {
         let squared = separation_squared(&place.gaussian, &newest.gaussian)?;
         if squared < least {

@@ -1,11 +1,10 @@
-//! What places look like: reference views, where each was seen, and how both are learned and forgotten.
+//! The appearance map: reference views, the poses of each, and how both are learned and forgotten.
 
 mod appearance_map;
 mod comparing;
 mod far;
 mod grid;
 mod interpolate;
-mod known;
 mod learn;
 mod merge;
 mod params;
@@ -15,14 +14,14 @@ mod superpose;
 mod weigh;
 
 pub use appearance_map::AppearanceMap;
-pub(crate) use comparing::heading_measurement::HeadingMeasurement;
 pub use comparing::place_match::PlaceMatch;
+pub(crate) use comparing::scale_learner::ScaleLearner;
 pub use comparing::similarity::similarity;
 pub use comparing::view_scale::{ViewDifferenceSample, ViewDistanceScale};
+pub(crate) use far::{N_FAR, PlaceTest};
 pub use interpolate::interpolate;
+pub(crate) use interpolate::{GROUP_SIZE, HEADING_SIGMA};
 pub use learn::MapUpdate;
-pub use params::{
-    AppearanceMapParams, ForgettingMode, ForgettingParams, ForgettingUncertainty, PlaceUpdateRule,
-};
+pub use params::{AppearanceMapParams, ForgettingMode, ForgettingUncertainty, PlaceUpdateRule};
 pub use reference::{PlaceComponent, ReferenceView};
 pub use superpose::superpose;

@@ -4,17 +4,32 @@ use wayfix_gaussian_core::{Gaussian, check_covariance};
 use crate::{AppearanceMapError, check};
 
 /// One place where a reference view was seen. [Gross et al. 2005, Eq. 10]
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_appearance_cml::{PlaceComponent, ReferenceView};
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_gaussian_core::Gaussian;
+/// let gaussian = Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// let reference = ReferenceView { places: vec![PlaceComponent { weight: 0.3, count: 1.0, gaussian }] };
+/// assert!(reference.validate().is_ok() && reference.importance() == 0.3);
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceComponent {
-    /// How certain and relevant it is, in [0, 1]; weights of a reference need not add up to one.
+    /// Certainty and relevance, in [0, 1]; the weights of a reference need not add up to one.
     pub weight: f64,
-    /// How many observations it is made of, each counted by its share; positive.
+    /// Number of observations, each counted by its share; positive.
     pub count: f64,
     /// Pose of a robot that sees exactly the reference view, unturned.
     pub gaussian: Gaussian<Pose2<f64>>,
 }
 
-/// Where one reference view was seen.
+/// The places of one reference view.
+///
+/// ```
+/// assert_eq!(wayfix_appearance_cml::ReferenceView::default().importance(), 0.0);
+/// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ReferenceView {
     /// The places; a reference without any is removed.
@@ -22,15 +37,15 @@ pub struct ReferenceView {
 }
 
 impl ReferenceView {
-    /// $`\sum_j w_{ij}`$: how much the reference matters.
+    /// The importance of the reference, $`\sum_j w_{ij}`$.
     pub fn importance(&self) -> f64 {
         self.places.iter().map(|place| place.weight).sum()
     }
 
-    /// Whether the numbers have a meaning.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         for place in &self.places {
             check::share("weight of a place", place.weight)?;

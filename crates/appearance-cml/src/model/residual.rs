@@ -7,14 +7,14 @@ use super::merge::merged;
 use super::{AppearanceMapParams, PlaceComponent};
 use crate::{AppearanceMapError, ReferenceMatch};
 
-/// Where the robot is less where the references put it, in the frame of the map.
+/// The pose of the robot minus the pose that the references tell, in the frame of the map.
 pub(super) struct Residual {
     pub(super) translation: Vector2<f64>,
     pub(super) turn: f64,
 }
 
 impl Residual {
-    /// The place as it would have to be for the references to be right, merged into what it is.
+    /// Merges the place, moved by the residual, into the place.
     pub(super) fn correct(
         &self,
         place: &mut PlaceComponent,

@@ -1,6 +1,7 @@
-//! Where the robot may be: weighted Gaussians over poses, moved by odometry.
+//! Pose beliefs: weighted Gaussians, and how odometry moves them.
 
 mod hypothesis;
+mod motion;
 mod odometry_noise;
 mod propagate;
 mod separation;
@@ -8,9 +9,9 @@ mod simplify;
 mod unimodal;
 
 pub use hypothesis::PoseHypothesis;
+pub(crate) use motion::{Motion, RecordedMotion};
 pub use odometry_noise::OdometryNoise;
 pub use propagate::propagate;
-pub(crate) use propagate::transition;
 pub use separation::separation_squared;
 pub use simplify::{MixtureReductionParams, simplify};
-pub use unimodal::{UnimodalParams, unimodal};
+pub use unimodal::unimodal;

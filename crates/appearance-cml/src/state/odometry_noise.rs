@@ -1,9 +1,9 @@
-use nalgebra::{Matrix3, Vector3};
-use wayfix_estimation_traits::Pose2;
+use nalgebra::{Matrix3, Vector2, Vector3};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 
 use crate::{AppearanceMapError, check};
 
-/// How odometry errs: variances that grow with the way and with the turn, so that cutting a motion in pieces changes nothing.
+/// The default motion model: odometry whose error variances grow with distance and turn. Splitting a motion changes nothing.
 ///
 /// ```
 /// use wayfix_appearance_cml::OdometryNoise;
@@ -21,13 +21,13 @@ use crate::{AppearanceMapError, check};
     serde(default, deny_unknown_fields)
 )]
 pub struct OdometryNoise {
-    /// σ along the way after one metre, m. Default 0.025.
+    /// σ along the motion after one metre, m. Default 0.025; the wheels of your robot decide.
     pub forward_sigma_per_meter: f64,
-    /// σ across the way after one metre, m. Default 0.02.
+    /// σ across the motion after one metre, m. Default 0.02; the wheels of your robot decide.
     pub sideways_sigma_per_meter: f64,
-    /// σ of the heading after one metre, rad. Default 0.008.
+    /// σ of the heading after one metre, rad. Default 0.008; the wheels of your robot decide.
     pub heading_sigma_per_meter: f64,
-    /// σ of the heading after turning by one radian, rad. Default 0.02.
+    /// σ of the heading after turning by one radian, rad. Default 0.02; the wheels of your robot decide.
     pub heading_sigma_per_radian: f64,
 }
 
@@ -42,14 +42,11 @@ impl Default for OdometryNoise {
     }
 }
 
-/// σ below which no motion is believed, m and rad: a robot that stands still keeps a covariance that can be factored.
-const FLOOR: f64 = 1e-6;
-
 impl OdometryNoise {
-    /// Whether the numbers have a meaning.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::not_negative("forward noise of the odometry (m)", self.forward_sigma_per_meter)?;
         check::not_negative("sideways noise of the odometry (m)", self.sideways_sigma_per_meter)?;
@@ -57,17 +54,55 @@ impl OdometryNoise {
         check::not_negative("heading noise of the odometry a radian (rad)", self.heading_sigma_per_radian)
     }
 
-    /// Covariance of the error of one increment, in the body frame at its end.
+    /// Covariance of the error of one increment, in the body frame at its end. Machine precision keeps it positive definite at rest.
     pub fn covariance(&self, increment: &Pose2<f64>) -> Matrix3<f64> {
-        let distance = increment.translation.norm();
-        let turn = increment.heading().abs();
-        let heading =
-            self.heading_sigma_per_meter.powi(2) * distance + self.heading_sigma_per_radian.powi(2) * turn;
-        let floor = FLOOR * FLOOR;
-        Matrix3::from_diagonal(&Vector3::new(
-            self.forward_sigma_per_meter.powi(2) * distance + floor,
-            self.sideways_sigma_per_meter.powi(2) * distance + floor,
-            heading + floor,
-        ))
+        let (distance, turn) = (increment.translation.norm(), increment.heading().abs());
+        let variances = Vector3::new(
+            self.forward_sigma_per_meter.powi(2) * distance,
+            self.sideways_sigma_per_meter.powi(2) * distance,
+            self.heading_sigma_per_meter.powi(2) * distance + self.heading_sigma_per_radian.powi(2) * turn,
+        );
+        Matrix3::from_diagonal(&variances.add_scalar(f64::EPSILON))
+    }
+}
+
+impl MotionModel for OdometryNoise {
+    type State = Pose2<f64>;
+    type Control = Pose2<f64>;
+
+    /// $`x' = x ∘ u`$.
+    fn propagate(&self, pose: &Pose2<f64>, increment: &Pose2<f64>) -> Pose2<f64> {
+        pose.compose(increment)
+    }
+
+    fn jacobian(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
+        transition(increment)
+    }
+
+    fn noise(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
+        self.covariance(increment)
+    }
+}
+
+/// $`∂(x ∘ u)/∂x`$ between body frames.
+pub(crate) fn transition(increment: &Pose2<f64>) -> Matrix3<f64> {
+    let back = increment.rotation_matrix().transpose();
+    let swept = back * Vector2::new(-increment.y(), increment.x());
+    let mut matrix = back.to_homogeneous();
+    matrix[(0, 2)] = swept.x;
+    matrix[(1, 2)] = swept.y;
+    matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayfix_estimation_traits::laws;
+
+    #[test]
+    fn odometry_noise_obeys_the_laws_of_motion_models() {
+        let controls = [Pose2::new(0.7, -0.3, 0.9), Pose2::new(0.0, 0.0, 0.0), Pose2::new(-0.2, 0.1, -2.0)];
+        let cases = controls.each_ref().map(|control| (Pose2::new(4.0, 2.0, 3.0), control));
+        laws::motion(&OdometryNoise::default(), &cases).expect("the laws hold");
     }
 }

@@ -4,6 +4,12 @@ use super::{PoseHypothesis, separation_squared};
 use crate::{AppearanceMapError, check};
 
 /// How a mixture over poses is kept small.
+///
+/// ```
+/// use wayfix_appearance_cml::MixtureReductionParams;
+/// assert!(MixtureReductionParams::default().validate().is_ok());
+/// assert!(MixtureReductionParams { max_components: 0, ..Default::default() }.validate().is_err());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -12,35 +18,37 @@ use crate::{AppearanceMapError, check};
     serde(default, deny_unknown_fields)
 )]
 pub struct MixtureReductionParams {
-    /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
-    pub merge_distance: f64,
-    /// Share of the whole weight below which a component goes. Default 1e-7: what appears elsewhere starts light.
+    /// Share of the whole weight below which a component is removed. Default 1e-7: a place that one view finds in a map of 10 000 m² weighs
+    /// $`(2π)^{3/2} |C|^{1/2} / V`$, some 1e-6.
     pub min_weight: f64,
-    /// Most components that are kept. Default 30.
+    /// Maximum number of components, and of references that a search of the whole map returns. Default 40: the time of a step grows with it.
     pub max_components: usize,
 }
 
 impl Default for MixtureReductionParams {
     fn default() -> Self {
-        Self { merge_distance: 2.0, min_weight: 1e-7, max_components: 30 }
+        Self { min_weight: 1e-7, max_components: 40 }
     }
 }
+
+/// Squared Mahalanobis distance below which two components become one: the sum of two equal Gaussians has a single mode up to a
+/// distance of 2σ, which is $`d^2 = 4 σ^2 / 2 σ^2`$.
+const MERGE_DISTANCE: f64 = 2.0;
 
 impl MixtureReductionParams {
-    /// Whether the numbers have a meaning.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
-        check::not_negative("squared distance of components to merge", self.merge_distance)?;
-        check::share("least weight of a component", self.min_weight)?;
-        check::count("components to keep", self.max_components)
+        check::share("min_weight of a component", self.min_weight)?;
+        check::count("max_components", self.max_components)
     }
 }
 
-/// Drops what is light, merges what overlaps, keeps the heaviest; the heaviest comes first.
+/// Removes light components, merges overlapping ones and keeps the heaviest, in descending order of weight.
 ///
-/// Merging keeps mean and covariance of the pair, weights add.
+/// A merged component has the mean and the covariance of the pair, and the sum of the weights.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -57,7 +65,7 @@ impl MixtureReductionParams {
 /// ```
 ///
 /// # Errors
-/// When a weight is not finite or negative, all are zero, or a covariance is singular.
+/// Returns an error if a weight is not finite or negative, all weights are zero, or a covariance is singular.
 pub fn simplify(
     mut hypotheses: Vec<PoseHypothesis>,
     params: &MixtureReductionParams,
@@ -67,7 +75,7 @@ pub fn simplify(
     hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let mut kept: Vec<PoseHypothesis> = Vec::new();
     for hypothesis in hypotheses {
-        match nearest_within(&kept, &hypothesis, params.merge_distance)? {
+        match nearest_within(&kept, &hypothesis, MERGE_DISTANCE)? {
             Some(index) => {
                 let merged = merge(&kept[index], &hypothesis)?;
                 kept[index] = merged;

@@ -44,7 +44,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 3
     let ours = setup.localizer;
     Ok([
         through(N_PEOPLE, ours)?,
-        through(N_PEOPLE, LocalizerParams { corroboration: None, ..ours })?,
+        through(N_PEOPLE, LocalizerParams { reject_outliers: false, ..ours })?,
         through(0, ours)?,
     ])
 }

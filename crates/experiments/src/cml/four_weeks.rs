@@ -15,12 +15,12 @@ const N_PEOPLE: usize = 20;
 
 /// The drives of [`one`], as the figures call them.
 const COURSES: [&str; 6] =
-    ["static", "adapting", "static_later", "adapted", "static_printed", "adapting_printed"];
+    ["static", "adapting", "static_later", "adapted", "static_as_published", "adapting_as_published"];
 
 /// Fig. 5: a map learned with true poses, four weeks later, static and adapted.
 ///
 /// The paper reports "numerous" failures of the static map, and then 58 cm "by using the adapted map", which may be the drive that adapts it or a
-/// later one: both are measured, each against the static map on the same drive. The method as printed, on the first drive, shows the difficulty of
+/// later one: both are measured, each against the static map on the same drive. The method as published, on the first drive, shows the difficulty of
 /// the simulated world.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
@@ -39,8 +39,8 @@ pub fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     for (name, ours, against) in [
         ("adapting_over_static", 1, 0),
         ("adapted_over_static", 3, 2),
-        ("adapting_over_static_printed", 1, 4),
-        ("adapting_printed_over_static_printed", 5, 4),
+        ("adapting_over_static_as_published", 1, 4),
+        ("adapting_as_published_over_static_as_published", 5, 4),
     ] {
         let error = |at: usize| move |courses: &[SimulatedDriveResult; 6]| mean(&courses[at].errors);
         metrics.extend(ratio_of(name, &seeds, error(ours), error(against)));
@@ -69,7 +69,7 @@ pub fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     Ok(ReportRun { metrics, figures: vec![plot.draw()?], notes, ..ReportRun::default() })
 }
 
-/// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as printed.
+/// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as published.
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 6]> {
     let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
@@ -81,7 +81,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 6
         let mut localizer = PanoramaLocalizer::with_map(params, map.clone(), known_start(trip)?)?;
         Ok::<_, anyhow::Error>((localize_trip(&mut localizer, trip)?, localizer.into_map()))
     };
-    let (ours, printed) = (setup.localizer, LocalizerParams::printed());
+    let (ours, published) = (setup.localizer, LocalizerParams::as_published());
     let first = trip(1)?;
     let (adapting, adapted) = drive(&map, &first, Learning::Adapting, ours)?;
     let second = trip(2)?;
@@ -90,7 +90,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 6
         adapting,
         drive(&map, &second, Learning::Static, ours)?.0,
         drive(&adapted, &second, Learning::Adapting, ours)?.0,
-        drive(&map, &first, Learning::Static, printed)?.0,
-        drive(&map, &first, Learning::Adapting, printed)?.0,
+        drive(&map, &first, Learning::Static, published)?.0,
+        drive(&map, &first, Learning::Adapting, published)?.0,
     ])
 }

@@ -15,16 +15,19 @@ const SWITCHING_S: f64 = 30.0;
 /// Steps after which references are counted. [Gross et al. 2004, Table 1]
 const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 
+/// The drives of [`one`], as the figures call them.
+const COURSES: [&str; 4] = ["passive", "active", "passive_as_published", "active_as_published"];
+
 /// Table 1: references in a lab with changing lamps and curtains, with and without active forgetting.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
-    for (name, at) in [("passive", 0), ("active", 1)] {
+    for (at, name) in COURSES.iter().enumerate() {
         for step in STEPS {
             if seeds.iter().all(|courses| courses[at].n_references.len() >= step) {
-                let count = |courses: &[SimulatedDriveResult; 2]| courses[at].n_references[step - 1] as f64;
+                let count = |courses: &[SimulatedDriveResult; 4]| courses[at].n_references[step - 1] as f64;
                 metrics.extend(mean_of(&format!("references_{name}_{step}"), "", &seeds, count));
             }
         }
@@ -36,7 +39,7 @@ pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> 
     let points = |course: &SimulatedDriveResult| {
         course.n_references.iter().enumerate().step_by(20).map(|(step, n)| (step as f64, *n as f64)).collect()
     };
-    let series = seeds.first().map_or(Vec::new(), |[passive, active]| {
+    let series = seeds.first().map_or(Vec::new(), |[passive, active, ..]| {
         vec![
             PlotSeries::new("passive forgetting", points(passive)),
             PlotSeries::new("active forgetting", points(active)),
@@ -57,8 +60,8 @@ pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> 
 }
 
 /// Growth of the number of references in the last quarter of the steps, as a share of it.
-fn growth(name: &str, seeds: &[[SimulatedDriveResult; 2]], at: usize) -> Vec<Metric> {
-    let share = |courses: &[SimulatedDriveResult; 2]| {
+fn growth(name: &str, seeds: &[[SimulatedDriveResult; 4]], at: usize) -> Vec<Metric> {
+    let share = |courses: &[SimulatedDriveResult; 4]| {
         let counts = &courses[at].n_references;
         let at = |quarter: usize| {
             counts.get((counts.len() * quarter / 4).saturating_sub(1)).map_or(f64::NAN, |n| *n as f64)
@@ -68,20 +71,23 @@ fn growth(name: &str, seeds: &[[SimulatedDriveResult; 2]], at: usize) -> Vec<Met
     mean_of(&format!("growth_last_quarter_{name}"), "", seeds, share)
 }
 
-/// The same drive with passive, then with active forgetting.
-fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 2]> {
+/// The same drive with passive and with active forgetting, then both as published.
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 4]> {
     let building = Laboratory::draw(&mut Draw::World.rng(seed)).building();
     let ambient_light =
         AmbientLightParams { switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
     let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
-    let with = |forgetting| {
-        let params = LocalizerParams {
-            map: AppearanceMapParams { forgetting_mode: forgetting, ..setup.localizer.map },
-            ..setup.localizer
-        };
+    let with = |params: LocalizerParams, forgetting_mode| {
+        let params = LocalizerParams { map: AppearanceMapParams { forgetting_mode, ..params.map }, ..params };
         localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
-    Ok([with(ForgettingMode::Passive)?, with(ForgettingMode::Active)?])
+    let (ours, published) = (setup.localizer, LocalizerParams::as_published());
+    Ok([
+        with(ours, ForgettingMode::Passive)?,
+        with(ours, ForgettingMode::Active)?,
+        with(published, ForgettingMode::Passive)?,
+        with(published, ForgettingMode::Active)?,
+    ])
 }

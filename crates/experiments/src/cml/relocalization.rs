@@ -23,7 +23,7 @@ const NEAR_M: f64 = 1.0;
 const TRAVEL_M: f64 = 20.0;
 /// Way between two views, metres, about.
 const VIEW_M: f64 = 0.25;
-/// Distance for which a kidnapped robot is followed, m: the previous hypothesis survives for 50 m after the relocalization.
+/// Distance for which a kidnapped robot is followed, m: the previous hypothesis is kept for 20 m after the relocalization.
 const FOLLOWED_M: f64 = 80.0;
 /// Error after a relocalization that counts as divergence, m: across an aisle.
 const DIVERGED_M: f64 = 3.0;

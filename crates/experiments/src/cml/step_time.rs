@@ -102,11 +102,15 @@ fn between(trip: &SimulatedDrive) -> impl Iterator<Item = (PanoramaDescriptor, P
 
 /// Seconds of searches without a belief.
 fn search_s(map: &PanoramaMap, trip: &SimulatedDrive, params: &LocalizerParams) -> Vec<f64> {
-    let limit = map.match_limit(&params.map);
     let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
     let search = |view: &PanoramaDescriptor| {
         let stopwatch = Stopwatch::start();
-        black_box(map.place_matches_anywhere(view, &[], params.most_matches, limit));
+        black_box(map.place_matches(
+            view,
+            &[],
+            params.simplify.max_components,
+            (&params.map, params.fusion.gate),
+        ));
         stopwatch.elapsed().as_secs_f64()
     };
     views.map(search).collect()

@@ -1,4 +1,5 @@
 use anyhow::Result;
+use wayfix_appearance_cml::LocalizerParams;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
 
 use super::area::plan;
@@ -8,8 +9,8 @@ use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use wayfix_evaluation::plot::MapPlot;
 use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::PanoramaLocalizer;
 use wayfix_systems::cml::histogram;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 const N_DAYS: usize = 3;
 /// Share of the shelf sections that are rearranged over night.
@@ -22,6 +23,8 @@ struct Day {
     building: Building,
     trip: SimulatedDrive,
     course: SimulatedDriveResult,
+    /// The same with the method as published.
+    published: SimulatedDriveResult,
 }
 
 /// Fig. 6: three days from an empty map, odometry as it is; each day begins where the robot is charged.
@@ -38,6 +41,9 @@ pub fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         }));
         metrics.extend(mean_of(&format!("error_max_m_day{number}"), "m", &seeds, |days| {
             largest(&days[day].course.errors)
+        }));
+        metrics.extend(mean_of(&format!("error_mean_m_day{number}_as_published"), "m", &seeds, |days| {
+            mean(&days[day].published.errors)
         }));
         let references = |days: &Vec<Day>| days[day].course.n_references.last().map_or(0.0, |n| *n as f64);
         metrics.extend(mean_of(&format!("references_day{number}"), "", &seeds, references));
@@ -77,7 +83,8 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Vec<Day>> {
     };
     let mut store = RetailStore::draw(shape, &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-    let mut localizer: Option<PanoramaLocalizer> = None;
+    let mut localizers =
+        [setup.localizer, LocalizerParams::as_published()].map(|params| (params, PanoramaMap::default()));
     let mut days = Vec::new();
     for day in 0..N_DAYS as u64 {
         if day > 0 {
@@ -85,15 +92,14 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Vec<Day>> {
         }
         let building = store.building();
         let trip = tour(&building, setup.length_m, params, (seed, day))?;
-        let mut today = match localizer.take() {
-            Some(yesterday) => {
-                PanoramaLocalizer::with_map(setup.localizer, yesterday.into_map(), known_start(&trip)?)?
-            }
-            None => PanoramaLocalizer::new(setup.localizer, known_start(&trip)?)?,
-        };
-        let course = localize_trip(&mut today, &trip)?;
-        localizer = Some(today);
-        days.push(Day { building, trip, course });
+        let mut courses = Vec::new();
+        for (params, map) in &mut localizers {
+            let mut today = PanoramaLocalizer::with_map(*params, std::mem::take(map), known_start(&trip)?)?;
+            courses.push(localize_trip(&mut today, &trip)?);
+            *map = today.into_map();
+        }
+        let (published, course) = (courses.pop().unwrap_or_default(), courses.pop().unwrap_or_default());
+        days.push(Day { building, trip, course, published });
     }
     Ok(days)
 }

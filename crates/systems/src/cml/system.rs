@@ -52,7 +52,7 @@ pub struct CmlViewResult {
     /// The most similar reference before learning from this view: its distance, and the position where it was learned.
     pub nearest: Option<(f64, [f64; 2])>,
     /// Number of places that match the view.
-    pub n_sightings: usize,
+    pub n_detections: usize,
     /// Number of references in the map after the view.
     pub n_references: usize,
     /// Computing time after decoding.
@@ -179,7 +179,7 @@ impl CmlSystem {
             is_certain: outcome.estimate.is_some(),
             odometry: self.odometry,
             nearest,
-            n_sightings: outcome.n_sightings,
+            n_detections: outcome.n_detections,
             n_references: self.localizer.map().len(),
             step,
         });

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use wayfix_sensor_log::read_text;
 
-use super::renamed::present_name;
+use super::renamed::{present_name, replacement};
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
@@ -36,6 +36,9 @@ fn hint(message: &str) -> Option<String> {
     let allowed: Vec<&str> = names.collect();
     if let Some(name) = present_name(unknown, allowed.iter().copied()) {
         return Some(format!("\n`{unknown}` is called `{name}` now"));
+    }
+    if let Some(what) = replacement(unknown, allowed.iter().copied()) {
+        return Some(format!("\n`{unknown}` was replaced: {what}"));
     }
     let likeness = |name: &str| strsim::jaro_winkler(unknown, name);
     let alike = allowed.into_iter().filter(|name| likeness(name) > ALIKE);

@@ -1,9 +1,10 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 141] = [
+const RENAMED: [(&str, &str); 142] = [
     ("accept", "gate_nis"),
-    ("active", "active_forgetting"),
+    ("active", "forgetting_rate"),
+    ("active_forgetting", "forgetting_rate"),
     ("adapt_above", "adapt_above_intersection"),
     ("adaptation", "color_adaptation_rate"),
     ("adapts", "adapts_colors"),
@@ -27,6 +28,7 @@ const RENAMED: [(&str, &str); 141] = [
     ("confidence", "goal_confidence"),
     ("confirmations", "n_confirmations"),
     ("contradiction", "restart_nis"),
+    ("corroboration", "reject_outliers"),
     ("damping", "velocity_retention"),
     ("detection", "detection_probability"),
     ("disagreement", "odometry_noise_per_scan"),
@@ -45,7 +47,6 @@ const RENAMED: [(&str, &str); 141] = [
     ("forgetting", "forgetting_mode"),
     ("forward", "forward_sigma_per_meter"),
     ("found_from", "found_above"),
-    ("gain", "full_rate_sigma"),
     ("greatest_count", "max_observation_count"),
     ("greatest_sigma", "max_sigma"),
     ("grey_share", "gray_channel_share"),
@@ -56,7 +57,6 @@ const RENAMED: [(&str, &str); 141] = [
     ("increment", "increment_noise"),
     ("independent_rad", "correlation_angle_rad"),
     ("inertia", "previous_filter_weight"),
-    ("insertion", "insertion_distance_factor"),
     ("kept_distance", "alternative_kept_distance"),
     ("largest_gap", "max_wall_gap"),
     ("laser", "laser_pose"),
@@ -113,6 +113,7 @@ const RENAMED: [(&str, &str); 141] = [
     ("reach_m", "max_range_m"),
     ("recognize_above", "recognize_above_psr"),
     ("recognize_share", "recognition_response_share"),
+    ("relocation", "relocalization"),
     ("scale_rate", "scale_filter_rate"),
     ("sense", "azimuth_direction"),
     ("separation", "min_separation"),
@@ -131,10 +132,10 @@ const RENAMED: [(&str, &str); 141] = [
     ("taught_pose", "taught_pose_uncertainty"),
     ("tolerance", "same_place_tolerance"),
     ("tone", "intensity_scale"),
-    ("uncertainty", "uncertainty_measure"),
     ("uneven_brightness", "brightness_variation"),
     ("uneven_chroma", "chroma_variation"),
     ("uniform_share", "uniform_background_share"),
+    ("unimodal", "unimodal_weight"),
     ("unseen", "unseen_colors"),
     ("velocity", "velocity_noise"),
     ("views", "panorama_descriptor"),
@@ -151,6 +152,29 @@ pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>
     allowed.into_iter().find(|name| new.contains(name))
 }
 
+/// Old name, a name beside which it stood, and what replaces it.
+const REPLACED: [(&str, &str, &str); 9] = [
+    ("delay", "unimodal_weight", "a view waits until the robot is a match radius away"),
+    (
+        "insertion",
+        "match_limit_fraction",
+        "a view becomes a reference beyond the distance of successive views",
+    ),
+    ("longest_wait", "unimodal_weight", "`relocalization.alternative_kept_distance` bounds the wait"),
+    ("match_limit", "match_limit_fraction", "`match_limit_fraction` sets it"),
+    ("memory", "unimodal_weight", "references are not moved any more"),
+    ("merge_distance", "match_limit_fraction", "`fusion.gate` holds for places too"),
+    ("most_matches", "unimodal_weight", "`simplify.max_components` holds for matches too"),
+    ("patience", "unimodal_weight", "`relocalization.alternative_kept_distance` bounds the wait"),
+    ("place_gate", "match_limit_fraction", "`fusion.gate` holds for places too"),
+];
+
+/// What replaces `old`, which stood among the allowed names.
+pub(super) fn replacement<'a>(old: &str, mut allowed: impl Iterator<Item = &'a str>) -> Option<&'static str> {
+    let (_, beside, what) = REPLACED.iter().find(|(name, ..)| *name == old)?;
+    allowed.any(|name| name == *beside).then_some(*what)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,5 +185,12 @@ mod tests {
         assert_eq!(present_name("reach", allowed.into_iter()), Some("sensor_range"));
         assert_eq!(present_name("reach", ["step"].into_iter()), None);
         assert_eq!(present_name("range_sigmas", allowed.into_iter()), None);
+    }
+
+    #[test]
+    fn replaced_name_is_told_what_replaces_it() {
+        let of = |old, beside| replacement(old, std::iter::once(beside));
+        assert_eq!(of("place_gate", "match_limit_fraction"), Some("`fusion.gate` holds for places too"));
+        assert_eq!(of("delay", "range_sigma"), None);
     }
 }

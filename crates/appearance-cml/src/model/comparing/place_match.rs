@@ -5,16 +5,16 @@ use wayfix_gaussian_core::Gaussian;
 use super::super::PlaceComponent;
 use crate::ReferenceMatch;
 
-/// A place whose reference looks like the view: what it says of the pose, and how strongly.
+/// A place whose reference matches the view, and the pose that it tells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceMatch {
-    /// Which reference, and by how much it differs.
+    /// The reference, and its difference from the view.
     pub matched: ReferenceMatch,
-    /// Which of its places.
+    /// Index of the place in the reference.
     pub place: usize,
     /// Weight of the place in the map, in [0, 1].
     pub weight: f64,
-    /// How much it speaks for its place, in [0, 1]: $`S`$.
+    /// The similarity $`S`$, in [0, 1].
     pub similarity: f64,
     /// The place, turned to the heading of the view.
     pub gaussian: Gaussian<Pose2<f64>>,
@@ -36,7 +36,7 @@ impl PlaceMatch {
     }
 }
 
-/// A belief about a robot that is turned by `rotation`, its covariance as it was in the world.
+/// The belief about a robot turned by `rotation`; the covariance in the world stays.
 pub(in crate::model) fn turned(belief: &Gaussian<Pose2<f64>>, rotation: f64) -> Gaussian<Pose2<f64>> {
     let mean = belief.mean().retract(&Vector3::new(0.0, 0.0, rotation));
     let to_new_body = belief.mean().chart_jacobian(&mean);

@@ -9,6 +9,6 @@
 /// assert!(similarity(0.9, 2.0) > similarity(1.0, 2.0));
 /// ```
 pub fn similarity(distance: f64, limit: f64) -> f64 {
-    // A comparison that is NaN is no similarity at all, and nothing is similar within no distance.
+    // NaN is not similar.
     if distance < limit { (1.0 - (distance / limit).powi(2)).powi(2) } else { 0.0 }
 }

@@ -101,6 +101,9 @@ pub(crate) struct Arguments {
     /// keeps a learned map unchanged [default: from the parameters].
     #[arg(long, value_enum)]
     pub(super) forgetting: Option<ForgettingArgument>,
+    /// The localizer as published by Gross et al., without the additions; the odometry noise stays.
+    #[arg(long)]
+    pub(super) as_published: bool,
     /// Raw images: centre of their ring, pixels right and down.
     #[arg(long, value_name = "X,Y", requires = "radii", value_parser = pair)]
     pub(super) center: Option<[f64; 2]>,

@@ -7,7 +7,7 @@ use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{
-    AzimuthDirection, ForgettingMode, Learning, MapArchive, MapArchiveParams, Start,
+    AzimuthDirection, ForgettingMode, Learning, LocalizerParams, MapArchive, MapArchiveParams, Start,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
@@ -36,6 +36,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
         None => CmlParams::default(),
     };
+    arguments.set_published(&mut params);
     arguments.set_forgetting(&mut params);
     if arguments.common.print_params {
         print(commented(&params)?)?;
@@ -93,6 +94,14 @@ struct Input {
 }
 
 impl Arguments {
+    /// Sets the localizer as published. Odometry describes the robot, not the method.
+    fn set_published(&self, params: &mut CmlParams) {
+        if self.as_published {
+            let odometry = params.localizer.odometry;
+            params.localizer = LocalizerParams { odometry, ..LocalizerParams::as_published() };
+        }
+    }
+
     fn set_forgetting(&self, params: &mut CmlParams) {
         match self.forgetting {
             None => {}

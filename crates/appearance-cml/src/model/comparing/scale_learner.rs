@@ -1,10 +1,11 @@
 use std::collections::VecDeque;
 
+use super::super::interpolate::GROUP_SIZE;
 use crate::{Descriptor, ViewDifferenceSample, ViewDistanceScale};
 
-/// The last few views along the way, between which the scale of distances is measured.
+/// Learns the scale of view differences along the path: over one step, and over the radius of a group of places.
 #[derive(Clone, Debug)]
-pub(super) struct ScaleLearner<D> {
+pub(crate) struct ScaleLearner<D> {
     recent: VecDeque<(f64, D)>,
     odometer: f64,
 }
@@ -15,18 +16,13 @@ impl<D> Default for ScaleLearner<D> {
     }
 }
 
-/// Views that the second lag spans.
-const LAG: usize = 4;
-/// A shorter way between two views counts as standing still, m.
-const LEAST_WAY: f64 = 0.005;
-
 impl<D: Descriptor + Clone> ScaleLearner<D> {
-    /// Measures a view that was taken `way` metres after the last one.
-    pub(super) fn observe(&mut self, way: f64, view: &D, scale: &mut ViewDistanceScale) {
-        if way < LEAST_WAY && !self.recent.is_empty() {
+    /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest tells nothing of the scale.
+    pub(crate) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewDistanceScale) {
+        if distance <= scale.step() / 2.0 && !self.recent.is_empty() {
             return;
         }
-        self.odometer += way;
+        self.odometer += distance;
         let lag = |&(odometer, ref earlier): &(f64, D)| ViewDifferenceSample {
             lag: self.odometer - odometer,
             distance: view.compare(earlier).distance,
@@ -34,15 +30,15 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
         if let Some(sample) = self.recent.back().map(lag) {
             scale.add_near(sample);
         }
-        let ahead = (self.recent.len() == LAG).then(|| self.recent.pop_front()).flatten();
+        let ahead = (self.recent.len() == GROUP_SIZE).then(|| self.recent.pop_front()).flatten();
         if let Some(sample) = ahead.as_ref().map(lag) {
             scale.add_ahead(sample);
         }
         self.recent.push_back((self.odometer, view.clone()));
     }
 
-    /// What comes next is not connected with what was before.
-    pub(super) fn interrupt(&mut self) {
+    /// The next view is not connected with the previous ones.
+    pub(crate) fn interrupt(&mut self) {
         self.recent.clear();
     }
 }

@@ -1,0 +1,170 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
+
+use super::belief::Belief;
+use super::{AppearanceLocalizer, LocalizerParams, Recovery};
+use crate::model::{N_FAR, PlaceTest};
+use crate::{AppearanceMap, AppearanceMapError, Descriptor, ReferenceSearch, separation_squared};
+
+/// Is the robot where the belief puts it? The test between the belief and alternatives from searches of the whole map.
+///
+/// A view *recognizes* a hypothesis if a reference there is nearer to it than all of [`N_FAR`] references of far places. At a wrong hypothesis
+/// $`k`$ references do so with probability $`k/(k+n)`$, by exchangeability. At the right one the rate is the mean of a Beta posterior over the views so
+/// far, from the uniform prior; a view counts with the probability that the robot is at no alternative. The log-likelihood ratio is that of
+/// these two Bernoulli distributions, 0 where the map knows nothing.
+///
+/// A view that does not recognize the present hypothesis starts a search of the whole map, unless the last one was within the match radius.
+///
+/// Views nearer to one another than the match radius show the same things. Each counts as the share of an independent one that the
+/// distance is of the match radius.
+#[derive(Clone, Debug)]
+pub(super) struct KidnapTest {
+    alternatives: RelocalizationTest<Belief>,
+    recognized: f64,
+    missed: f64,
+    /// Distance since the last search, m.
+    unsearched: f64,
+}
+
+impl KidnapTest {
+    pub(super) fn new(params: &LocalizerParams) -> Result<Self, AppearanceMapError> {
+        Ok(Self {
+            alternatives: RelocalizationTest::new(params.relocalization)?,
+            recognized: 1.0,
+            missed: 1.0,
+            unsearched: f64::INFINITY,
+        })
+    }
+
+    /// Posterior probability that the robot is at an alternative.
+    pub(super) fn probability(&self) -> f64 {
+        self.alternatives.probability()
+    }
+
+    /// Whether the hypothesis before the last relocalization may still return.
+    pub(super) fn keeps_previous(&self) -> bool {
+        self.alternatives.alternatives().iter().any(|alternative| alternative.is_previous())
+    }
+
+    /// Moves the alternatives by `predict`; one that fails stays behind and loses.
+    pub(super) fn predict(&mut self, predict: impl Fn(&Belief) -> Result<Belief, AppearanceMapError>) {
+        for alternative in self.alternatives.alternatives_mut() {
+            if let Ok(moved) = predict(&alternative.hypothesis) {
+                alternative.hypothesis = moved;
+            }
+        }
+    }
+
+    /// Mean of the Beta posterior of the probability that a view recognizes the place of the robot.
+    fn rate(&self) -> f64 {
+        self.recognized / (self.recognized + self.missed)
+    }
+
+    /// Takes the test of the present hypothesis, as a share of an independent view.
+    fn observe(&mut self, test: Option<PlaceTest>, independence: f64) {
+        let counted = independence * (1.0 - self.probability());
+        match test {
+            Some(test) if test.is_recognized => self.recognized += counted,
+            Some(_) => self.missed += counted,
+            None => {}
+        }
+    }
+}
+
+/// Log-likelihood ratio of a view between "the robot is there" and "the robot is elsewhere".
+fn log_ratio(test: Option<PlaceTest>, rate: f64) -> f64 {
+    let Some(PlaceTest { is_recognized, chance }) = test else { return 0.0 };
+    // The right place is not recognized less often than a wrong one.
+    let rate = rate.max(chance);
+    if is_recognized { (rate / chance).ln() } else { ((1.0 - rate) / (1.0 - chance)).ln() }
+}
+
+impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
+    /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative wins.
+    ///
+    /// Returns whether it did.
+    pub(super) fn relocalize(&mut self, view: &D, belief: &mut Belief) -> Result<bool, AppearanceMapError> {
+        let Some(present) = self.belief.heaviest().filter(|_| self.params.recovery != Recovery::Off) else {
+            return Ok(false);
+        };
+        let (map, params) = (&self.map, &self.params);
+        let distance = self.motion.distance();
+        let radius = map.match_radius(&params.map);
+        let independence = if radius > 0.0 { (distance / radius).min(1.0) } else { 0.0 };
+        let sample = map.sample(view, self.n_views, N_FAR);
+        let test = |at: Option<&Gaussian<Pose2<f64>>>| map.test_place(view, at?, &sample, &params.map);
+
+        let rate = self.kidnap.rate();
+        let ratio = |test| independence * log_ratio(test, rate);
+
+        let (kidnap, of_present) = (&mut self.kidnap, test(Some(present)));
+        kidnap.unsearched += distance;
+        kidnap.alternatives.drive(distance)?;
+        kidnap.alternatives.observe(ratio(of_present), |alternative| ratio(test(alternative.heaviest())))?;
+        for alternative in kidnap.alternatives.alternatives_mut() {
+            // A hypothesis that becomes singular stays as it is and loses.
+            if let Ok(seen) = seen(map, view, &alternative.hypothesis, params) {
+                alternative.hypothesis = seen;
+            }
+        }
+        kidnap.observe(of_present, independence);
+        let is_recognized = of_present.is_some_and(|test| test.is_recognized);
+        if !is_recognized && kidnap.unsearched >= radius {
+            let prior = (radius * radius / map.area()).min(1.0);
+            let mut places = search(map, view, params).unwrap_or_default();
+            places.retain(|place| is_new(place, present, kidnap, map, params));
+            let proposals = places.into_iter().filter_map(|place| {
+                let log_likelihood_ratio = ratio(test(Some(&place))) - ratio(of_present);
+                Some(RelocalizationCandidate {
+                    hypothesis: Belief::at(place).ok()?,
+                    prior,
+                    log_likelihood_ratio,
+                })
+            });
+            kidnap.alternatives.propose(proposals)?;
+            kidnap.unsearched = 0.0;
+        }
+        Ok(kidnap.alternatives.decide(belief))
+    }
+}
+
+/// A hypothesis after the view, which it looks for nearby.
+fn seen<D: Descriptor, S: ReferenceSearch<D>>(
+    map: &AppearanceMap<D, S>,
+    view: &D,
+    belief: &Belief,
+    params: &LocalizerParams,
+) -> Result<Belief, AppearanceMapError> {
+    let matched = map.match_view(view, belief, params)?;
+    belief.fused(Some(&matched.likelihood), &[], map.area(), params)
+}
+
+/// The places of the whole map that match the view.
+fn search<D: Descriptor, S: ReferenceSearch<D>>(
+    map: &AppearanceMap<D, S>,
+    view: &D,
+    params: &LocalizerParams,
+) -> Result<Vec<Gaussian<Pose2<f64>>>, AppearanceMapError> {
+    let anywhere = Belief { state: None, uniform: 1.0 };
+    let peaks = map.match_view(view, &anywhere, params)?.likelihood.peaks;
+    Ok(peaks.into_iter().map(|peak| peak.gaussian).collect())
+}
+
+/// Whether a place is far from the present hypothesis, and no alternative means it yet. Views of places that are not far from one another
+/// are similar, so that both hypotheses would be recognized.
+fn is_new<D: Descriptor, S: ReferenceSearch<D>>(
+    place: &Gaussian<Pose2<f64>>,
+    present: &Gaussian<Pose2<f64>>,
+    kidnap: &KidnapTest,
+    map: &AppearanceMap<D, S>,
+    params: &LocalizerParams,
+) -> bool {
+    let distance = (place.mean().translation - present.mean().translation).norm();
+    let agrees = |other: &Belief| {
+        let squared = other.heaviest().map(|other| separation_squared(other, place));
+        matches!(squared, Some(Ok(squared)) if squared < params.fusion.gate)
+    };
+    let alternatives = kidnap.alternatives.alternatives();
+    distance > map.scale().far_distance() && !alternatives.iter().any(|other| agrees(&other.hypothesis))
+}
