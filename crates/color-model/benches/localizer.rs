@@ -9,11 +9,10 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
+use wayfix_color_map::{PinholeCamera, ColorMap, MapRenderer};
 use wayfix_color_model::{
-    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingFilterParams,
-    LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, Start, YuvImage,
-    gather,
+    PixelClassifier, ColorLocalizer, ColorMeans, PrefixSumImage, LightingBank, LightingFilter, LightingFilterParams,
+    LocalizerParams, ColorLookUpTable, PixelLikelihoodParams, PixelSums, Start, YuvImage, gather,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -65,7 +64,7 @@ fn main() {
     report("classify 208x160, table", 50, || table.classify_image(&image));
     report("compile the table", 3, || ColorLookUpTable::new(light.clone(), None));
 
-    let params = LocalizerParams { min_particles: 1000, ..LocalizerParams::default() };
+    let params = LocalizerParams::default();
     let start = Start::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut localizer =
