@@ -9,10 +9,11 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{PinholeCamera, ColorMap, MapRenderer};
+use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_color_model::{
-    PixelClassifier, ColorLocalizer, ColorMeans, PrefixSumImage, LightingBank, LightingFilter, LightingFilterParams,
-    LocalizerParams, ColorLookUpTable, PixelLikelihoodParams, PixelSums, Start, YuvImage, gather,
+    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingFilterParams,
+    LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, Start, YuvImage,
+    gather,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;

@@ -21,11 +21,11 @@ pub use lighting::{
 };
 pub use likelihood::{
     CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch,
-    LightErrorCorrelation, LikelihoodModel, PixelFrame, PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood,
-    PixelSumDensity, PoseView, gather,
+    LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame, PixelLikelihood, PixelLikelihoodParams,
+    PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
-    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams, Occlusion,
+    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
     OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
 };
 pub use prior::{

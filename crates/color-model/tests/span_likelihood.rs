@@ -6,10 +6,10 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{PostBand, PinholeCamera, ColorId, ColorMap, MapRenderer, ColoredShape};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PostBand};
 use wayfix_color_model::{
-    ColorDensity, ColorModelError, PrefixSumImage, PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, CameraPoseLikelihood,
-    YuvImage,
+    CameraPoseLikelihood, ColorDensity, ColorModelError, PixelLikelihood, PixelLikelihoodParams,
+    PixelSpanLikelihood, PrefixSumImage, YuvImage,
 };
 use wayfix_estimation_traits::Pose3;
 

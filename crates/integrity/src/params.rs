@@ -48,7 +48,12 @@ impl RelocalizationParams {
         )?;
         let is_above = positive(kidnappings_per_km) && kidnappings_per_km > false_alarms_per_km;
         check("kidnappings_per_km", kidnappings_per_km, is_above, "finite and above false_alarms_per_km")?;
-        check("alternative_kept_distance (m)", alternative_kept_distance, alternative_kept_distance >= 0.0, "0 or more")
+        check(
+            "alternative_kept_distance (m)",
+            alternative_kept_distance,
+            alternative_kept_distance >= 0.0,
+            "0 or more",
+        )
     }
 
     /// No relocalization: the present hypothesis is never replaced.

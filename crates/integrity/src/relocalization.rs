@@ -148,7 +148,11 @@ impl<H> RelocalizationTest<H> {
         let even = 1.0 / self.params.prior();
         let start = |(hypothesis, log_likelihood_ratio)| {
             check_ratio(log_likelihood_ratio)?;
-            Ok(AlternativeHypothesis { hypothesis, statistic: times(even, log_likelihood_ratio), kind: Kind::Start })
+            Ok(AlternativeHypothesis {
+                hypothesis,
+                statistic: times(even, log_likelihood_ratio),
+                kind: Kind::Start,
+            })
         };
         self.alternatives = hypotheses.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
         self.distance = 0.0;

@@ -147,7 +147,8 @@ mod tests {
             outlier_share: 1e-9,
             ..Default::default()
         };
-        let (noise, mean_color_variance, n_pixels) = (Vector3::new(12.0, 6.0, 6.0), Vector3::new(8.0, 4.0, 4.0), 20);
+        let (noise, mean_color_variance, n_pixels) =
+            (Vector3::new(12.0, 6.0, 6.0), Vector3::new(8.0, 4.0, 4.0), 20);
         let (light, variances) = (Vector3::new(100.0, 119.0, 129.0), Vector3::new(25.0, 9.0, 9.0));
 
         let mut joint = JointLikelihood::new();

@@ -1,14 +1,18 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use wayfix_color_map::{PinholeCamera, ColorMap, MapRenderer};
+use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_estimation_traits::Pose3;
 
 use super::span::log_likelihood;
 use super::{
-    FeatureLikelihood, FeatureLikelihoodParams, JointLikelihood, LightErrorCorrelation, PixelLikelihoodParams, PixelSumDensity, CameraPoseLikelihood,
+    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, JointLikelihood, LightErrorCorrelation,
+    PixelLikelihoodParams, PixelSumDensity,
 };
-use crate::{BackgroundColorModel, PixelClassifier, ColorDensity, ColorModelError, LightingTracker, PixelSums, YuvImage};
+use crate::{
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingTracker, PixelClassifier, PixelSums,
+    YuvImage,
+};
 
 /// A likelihood that the localizer accepts: of a frame, from any camera pose, under each light of a tracker.
 ///
@@ -98,7 +102,11 @@ impl LikelihoodModel for PixelLikelihoodParams {
             joint.set_sums(view.sums, self, pixel_color_variance, *n_pixels);
         }
         for (at, value) in log_likelihoods.iter_mut().enumerate() {
-            let belief = if self.light_error_correlation == LightErrorCorrelation::Common { light.joint_belief(at) } else { None };
+            let belief = if self.light_error_correlation == LightErrorCorrelation::Common {
+                light.joint_belief(at)
+            } else {
+                None
+            };
             *value = match belief {
                 Some(belief) => joint.log_likelihood(belief, mean_color_variance),
                 None => self.independent(view.sums, light, at, *n_pixels).unwrap_or(f64::NEG_INFINITY),
@@ -119,8 +127,11 @@ impl PixelLikelihoodParams {
         at: usize,
         n_pixels: usize,
     ) -> Result<f64, ColorModelError> {
-        let densities =
-            self.shaded(light.colors_in(at)?).iter().map(PixelSumDensity::new).collect::<Result<Vec<_>, _>>()?;
+        let densities = self
+            .shaded(light.colors_in(at)?)
+            .iter()
+            .map(PixelSumDensity::new)
+            .collect::<Result<Vec<_>, _>>()?;
         Ok(log_likelihood(sums, &densities, self, n_pixels))
     }
 }

@@ -117,7 +117,11 @@ impl PixelLikelihoodParams {
         let Self { independent_pixels, outlier_share, brightness_variation, .. } = *self;
         check("independent pixels", independent_pixels, independent_pixels > 0.0)?;
         check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share <= 1.0)?;
-        check("uneven light", brightness_variation, brightness_variation >= 0.0 && brightness_variation.is_finite())
+        check(
+            "uneven light",
+            brightness_variation,
+            brightness_variation >= 0.0 && brightness_variation.is_finite(),
+        )
     }
 
     /// The exponent of a pixel's likelihood, at most 1.

@@ -1,7 +1,7 @@
 use std::{collections::VecDeque, sync::Arc};
 
 use rand::Rng;
-use wayfix_color_map::{PinholeCamera, ColorMap};
+use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
@@ -17,8 +17,8 @@ use super::{
     start::Area,
 };
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, LightingTracker, LightingBank, LikelihoodModel, PixelLikelihoodParams,
-    YuvImage,
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingBank, LightingTracker, LikelihoodModel,
+    PixelLikelihoodParams, YuvImage,
 };
 
 /// Probability of a place from which on it is tracked.

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
-use wayfix_color_map::{PinholeCamera, ColorId, ColorMap, ColoredShape};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
 use wayfix_estimation_traits::Pose2;
 
 use super::{buffer::BufferedFrame, start::Area};

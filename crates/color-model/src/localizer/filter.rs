@@ -3,8 +3,8 @@ use std::{collections::BTreeSet, sync::Arc};
 use rand::{Rng, RngExt};
 use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{
-    ParticleChunkRng, KldParams, KldSampling, ParticleSet, RaoBlackwellParticle, Resampler, SystematicResampler, NormalizedWeights, grid_cell,
-    map_conditionals,
+    KldParams, KldSampling, NormalizedWeights, ParticleChunkRng, ParticleSet, RaoBlackwellParticle,
+    Resampler, SystematicResampler, grid_cell, map_conditionals,
 };
 
 use super::{
@@ -12,9 +12,10 @@ use super::{
     camera::CameraLocation,
     estimate::{PLACE_RADIUS, dominant_cluster},
     frame::PreparedFrame,
-    occlusion::or_hidden,
 };
-use crate::{ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums};
+use crate::{
+    ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums, likelihood::or_hidden,
+};
 
 /// A camera location with its light, $`p(θ | x, z)`$, and what the last frame shows from there. [Schulz & Fox 2004, Eq. 12]
 #[derive(Clone)]
@@ -108,16 +109,17 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
         let mut set = ParticleSet::new(std::mem::take(&mut self.particles))?;
-        let weigh =
-            |(scratch, values): &mut (_, Vec<f64>), particle: &mut ColorParticle<T>, rng: &mut ParticleChunkRng| {
-                let location = &mut particle.state.sampled;
-                location.error = params.camera.after(&location.error, seconds, rng);
-                let light = particle.state.conditional();
-                values.resize(light.n_lights(), 0.0);
-                particle.sums.resize(frame.n_colors(), PixelSums::default());
-                frame.view(scratch, &particle.state.sampled, light, &mut particle.sums, values);
-                (particle.light, particle.log_likelihood) = draw_light(light, values, rng.random());
-            };
+        let weigh = |(scratch, values): &mut (_, Vec<f64>),
+                     particle: &mut ColorParticle<T>,
+                     rng: &mut ParticleChunkRng| {
+            let location = &mut particle.state.sampled;
+            location.error = params.camera.after(&location.error, seconds, rng);
+            let light = particle.state.conditional();
+            values.resize(light.n_lights(), 0.0);
+            particle.sums.resize(frame.n_colors(), PixelSums::default());
+            frame.view(scratch, &particle.state.sampled, light, &mut particle.sums, values);
+            (particle.light, particle.log_likelihood) = draw_light(light, values, rng.random());
+        };
         set.propagate_with(|| (frame.scratch(), Vec::new()), weigh, rng);
         self.particles = set.states().to_vec();
 
@@ -223,7 +225,11 @@ pub(crate) fn color_means(sums: &[PixelSums], params: &LocalizerParams) -> Color
 }
 
 /// The light drawn by `uniform`, and the log-likelihood that all lights sum to.
-pub(crate) fn draw_light(light: &impl LightingTracker, log_likelihoods: &[f64], uniform: f64) -> (usize, f64) {
+pub(crate) fn draw_light(
+    light: &impl LightingTracker,
+    log_likelihoods: &[f64],
+    uniform: f64,
+) -> (usize, f64) {
     let joint = |at: usize| light.light_probability(at).ln() + log_likelihoods[at];
     let joint: Vec<f64> = (0..log_likelihoods.len()).map(joint).collect();
     let sum = wayfix_gaussian_core::log_sum_exp(&joint);
@@ -247,7 +253,9 @@ pub(crate) fn tempered(
 ) -> Result<(NormalizedWeights, f64), ColorModelError> {
     let weights = |power: f64| {
         let log_weight = |(l, w): (&f64, &f64)| if *l == f64::NEG_INFINITY { *l } else { power * l + w.ln() };
-        NormalizedWeights::from_log(&log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>())
+        NormalizedWeights::from_log(
+            &log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>(),
+        )
     };
     let full = weights(1.0)?;
     if full.effective_sample_size() >= least {
@@ -270,7 +278,11 @@ fn n_particles<T, R: Rng + ?Sized>(
     rng: &mut R,
 ) -> Result<usize, ColorModelError> {
     let max = params.max_particles;
-    let kld = KldSampling::new(KldParams { min_particles: max.div_ceil(2), max_particles: max, ..KldParams::default() })?;
+    let kld = KldSampling::new(KldParams {
+        min_particles: max.div_ceil(2),
+        max_particles: max,
+        ..KldParams::default()
+    })?;
     let cell = |at: &usize| {
         let body = particles[*at].state.sampled.body;
         grid_cell([body.x(), body.y(), body.heading()], [PLACE_RADIUS / 2.0; 3])

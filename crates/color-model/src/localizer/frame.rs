@@ -1,12 +1,13 @@
 use std::sync::Arc;
 
-use wayfix_color_map::{PinholeCamera, ColorMap, MapRenderer};
+use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_estimation_traits::Pose3;
 
 use super::{background::ImageHistogram, camera::CameraLocation};
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, PrefixSumImage, FrameContext, LightingTracker, LightingFilterParams,
-    LikelihoodModel, PixelLikelihoodParams, PixelSums, PoseView, PixelSumDensity, YuvImage, gather,
+    BackgroundColorModel, ColorDensity, ColorModelError, FrameContext, LightingFilterParams, LightingTracker,
+    LikelihoodModel, PixelLikelihoodParams, PixelSumDensity, PixelSums, PoseView, PrefixSumImage, YuvImage,
+    gather,
 };
 
 /// Everything that does not change with the frame.

@@ -1,7 +1,7 @@
 use wayfix_integrity::RelocalizationParams;
 
-use super::{CameraNoise, Occlusion, OdometryNoise};
-use crate::{ColorModelError, PixelLikelihoodParams};
+use super::{CameraNoise, OdometryNoise};
+use crate::{ColorModelError, Occlusion, PixelLikelihoodParams};
 
 /// Parameters of [`ColorLocalizer`](crate::ColorLocalizer).
 ///

@@ -19,8 +19,8 @@ use super::{
     trajectory::Trajectory,
 };
 use crate::{
-    PixelClassifier, ColorModelError, PrefixSumImage, JointScratch, LightingTracker, LikelihoodModel, PixelFrame, PixelLikelihoodParams,
-    PixelSums, PoseView, gather, likelihood::JointLikelihood,
+    ColorModelError, JointScratch, LightingTracker, LikelihoodModel, PixelClassifier, PixelFrame,
+    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather, likelihood::JointLikelihood,
 };
 
 /// Images are searched at half the resolution.

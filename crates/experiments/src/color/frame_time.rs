@@ -3,10 +3,10 @@ use std::sync::Arc;
 use anyhow::Result;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_sensor_log::{RecordData, Record};
+use wayfix_sensor_log::{Record, RecordData};
 
 use wayfix_evaluation::{
-    plot::{LinePlot, AxisScale, PlotSeries, statistics::median},
+    plot::{AxisScale, LinePlot, PlotSeries, statistics::median},
     report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorSystemParams, run};
