@@ -6,7 +6,8 @@ use wayfix_line_extract::{
 
 #[test]
 fn a_file_names_only_what_it_changes() {
-    let text = r#"{ "split": "split-and-merge", "min_points": 8, "noise": { "sigma_range_m": 0.03 } }"#;
+    let text =
+        r#"{ "split_method": "split-and-merge", "min_points": 8, "beam_noise": { "sigma_range_m": 0.03 } }"#;
     let params: LineExtractionParams = serde_json::from_str(text).expect("valid JSON");
     assert_eq!((params.split_method, params.min_points), (SplitMethod::SplitAndMerge, 8));
     assert_eq!((params.beam_noise.sigma_range_m, params.beam_noise.sigma_bearing_rad), (0.03, 0.002));
