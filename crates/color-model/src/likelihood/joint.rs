@@ -12,7 +12,7 @@ use crate::PixelSums;
 /// \ln \int \prod_m \prod_{c ∈ m} N(c; θ_m + e_m, S_m)^β\, N(e; 0, R)\, N(θ; μ, Σ)\, dθ\, de
 /// ```
 ///
-/// $`β`$ is the tempering, $`R`$ the variance of an image's means, and $`S_m = ν + σ^2 s_m s_m^\top + \hat S_m`$ the covariance of the region's pixels: noise, uneven
+/// $`β`$ is the tempering, $`R`$ the variance of an image's means, and $`S_m = ν + σ^2 \operatorname{diag}(s_m s_m^\top) + \hat S_m`$ the covariance of the region's pixels: noise, uneven
 /// light, and the scatter $`\hat S_m`$ about the region's mean $`\bar c_m`$, which stands for what the map does not know of the surface. In closed form this is the
 /// density of each region's pixels about their mean, $`β \sum_c \ln N(c; \bar c_m, S_m)`$, plus that of all means,
 /// $`\ln N(\bar c; μ, Σ + R + S/βn) - \ln N(0; 0, S/βn)`$. Of $`S/βn`$ the diagonal is used.
@@ -52,7 +52,7 @@ impl JointLikelihood {
         let region = |(color, sums): (usize, &PixelSums)| {
             let Some(mean) = sums.mean() else { return Region::new(sums, 0.0) };
             let (n, scatter) = (sums.count() as f64, sums.scatter_about(&mean));
-            let covariance = Matrix3::from_diagonal(noise) + params.shade(&mean) + scatter / n;
+            let covariance = Matrix3::from_diagonal(&(noise + params.shade(&mean).diagonal())) + scatter / n;
             let Some(factor) = covariance.cholesky() else { return Region::new(sums, f64::NEG_INFINITY) };
             let variance = covariance.diagonal() / (tempering * n);
             self.regions.push(Mean { row: 3 * color, value: mean, variance });

@@ -29,6 +29,8 @@ impl ImageHistogram {
             n += 1.0;
         }
         let variance = noise + params.shade(&(sum / f64::max(n, 1.0))).diagonal();
+        // A cell itself has 1/12 of its squared width, and smoothing adds one squared width.
+        let variance = variance / (1.0 + 1.0 / 12.0);
         // A cell is at least one value wide and at most the whole range.
         let widths = variance.map(|variance| variance.sqrt().clamp(1.0, 255.0));
         let sizes: [usize; 3] = widths.map(|width| (255.0 / width) as usize + 1).into();
@@ -92,10 +94,13 @@ mod tests {
             ImageHistogram::new(std::iter::once(&image), &Vector3::new(144.0, 36.0, 36.0), &params);
         assert!(histogram.nats([100, 120, 140]) < histogram.nats([30, 128, 128]));
         assert!(histogram.nats([30, 128, 128]) < histogram.nats([250, 10, 10]));
-        let cells: Vec<[u8; 3]> = (0..22_u8)
-            .flat_map(|y| (0..43_u8).flat_map(move |u| (0..43_u8).map(move |v| [12 * y, 6 * u, 6 * v])))
-            .collect();
-        let sum: f64 = cells.iter().map(|cell| (-histogram.nats(*cell)).exp() * 12.0 * 6.0 * 6.0).sum();
+        let volume = histogram.widths.product();
+        let cell = |at: [usize; 3]| {
+            [0, 1, 2].map(|channel| ((at[channel] as f64 + 0.5) * histogram.widths[channel]) as u8)
+        };
+        let [n_y, n_u, n_v] = histogram.sizes;
+        let cells = (0..n_y).flat_map(|y| (0..n_u).flat_map(move |u| (0..n_v).map(move |v| [y, u, v])));
+        let sum: f64 = cells.map(|at| (-histogram.nats(cell(at))).exp() * volume).sum();
         assert!((sum - 1.0).abs() < 1e-3, "{sum}"); // single-precision counts
     }
 }
