@@ -223,7 +223,10 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             + free * used.len() as f64;
         (candidate.light, candidate.log_evidence) = self.evidence(scratch, &candidate.sums);
         let (mut left, mut cost) = (used, 0.0);
-        while effort == Effort::Full {
+        loop {
+            if effort == Effort::Coarse {
+                break;
+            }
             let mut best = None;
             for (index, &at) in left.iter().enumerate() {
                 let mut rest = candidate.sums.clone();

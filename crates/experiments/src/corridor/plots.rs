@@ -80,7 +80,7 @@ fn film(traverses: &Traverses, kind: DescriptorKind, journey: &LocalizationRun) 
     let film = FilmStrip {
         title: format!("What the robot sees, and the place it believes in ({})", kind.title()),
         rows: vec![("seen".to_owned(), seen), ("learned there".to_owned(), believed)],
-        frame_size: (size.width() as u32, size.height() as u32),
+        frame_size: (size.width(), size.height()),
     };
     Ok(film.draw()?)
 }

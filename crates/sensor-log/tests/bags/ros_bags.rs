@@ -70,7 +70,7 @@ fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
                 assert_eq!((info.cx, info.cy, info.fx, info.fy), (8.0, 6.0, 20.0, 21.0));
             }
             RecordData::Image(image) => {
-                assert_eq!(image.decode_rgb().unwrap().pixels[16 * 3 + 3..][..2], [20, 15])
+                assert_eq!(image.decode_rgb().unwrap().pixels[16 * 3 + 3..][..2], [20, 15]);
             }
             RecordData::Scan(scan) => {
                 assert_eq!((scan.ranges.len(), scan.echoes().count()), (91, 88));

@@ -108,7 +108,7 @@ impl Arguments {
             Some(ForgettingArgument::None) => params.localizer.learning = Learning::Static,
             Some(ForgettingArgument::Active) => params.localizer.map.forgetting_mode = ForgettingMode::Active,
             Some(ForgettingArgument::Passive) => {
-                params.localizer.map.forgetting_mode = ForgettingMode::Passive
+                params.localizer.map.forgetting_mode = ForgettingMode::Passive;
             }
         }
     }
