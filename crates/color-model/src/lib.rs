@@ -19,12 +19,12 @@ pub use lighting::{
     LightingBank, LightingFilter, LightingParams, Unseen,
 };
 pub use likelihood::{
-    FeatureLikelihood, FeatureParams, PixelLight, PixelLikelihood, PixelParams, SpanLikelihood, SumDensity,
-    ViewLikelihood, gather,
+    FeatureLikelihood, FeatureParams, FrameContext, JointScratch, LikelihoodModel, PixelFrame, PixelLight,
+    PixelLikelihood, PixelParams, PoseView, SpanLikelihood, SumDensity, ViewLikelihood, gather,
 };
 pub use localizer::{
-    AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
-    HiddenViews, LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams, Occlusion,
+    OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
 };
 pub use prior::{
     KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors,

@@ -7,30 +7,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::painted::{Scene, bank, camera_pose, mount};
 use wayfix_color_model::{
-    AcquisitionParams, ColorLocalizer, ColorModelError, Fix, FrameOutcome, LocalizerParams, OdometryStep,
-    Start, YuvImage,
+    ColorLocalizer, ColorModelError, Fix, FrameOutcome, LocalizerParams, OdometryStep, SearchParams, Start,
+    YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 
-/// A tenth of the usual effort, for pictures a quarter as large.
+/// A tenth of the usual effort, for images of a quarter of the size.
 fn params() -> LocalizerParams {
-    let acquisition = AcquisitionParams {
-        n_frames: 4,
-        n_weighed: 4,
-        n_drawn: 600,
-        n_niches: 30,
-        n_particles: 60,
-        shrink: 1,
-        ..AcquisitionParams::default()
-    };
-    LocalizerParams {
-        min_particles: 100,
-        max_particles: 200,
-        max_particles_lost: 600,
-        acquisition,
-        ..LocalizerParams::default()
-    }
+    let search = SearchParams { n_frames: 4, n_drawn: 600, n_places: 40, ..SearchParams::default() };
+    LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
 }
 
 fn localizer(scene: &Scene, start: &Start, rng: &mut ChaCha8Rng) -> ColorLocalizer {
@@ -149,15 +135,16 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
         assert!(matches!(made.err(), Some(ColorModelError::OutOfRange { .. })), "{params:?}");
     };
     for value in [f64::NAN, -1.0] {
-        refused(&|params| params.acquisition.elsewhere = value);
-        refused(&|params| params.acquisition.hopeless = value);
-        refused(&|params| params.pixels.uniform_share = value);
-        refused(&|params| params.pixels.uneven_brightness = value);
-        refused(&|params| params.pixels.uneven_chroma = value);
+        refused(&|params| params.pixels.uneven_light = value);
+        refused(&|params| params.pixels.independent_pixels = value);
+        refused(&|params| params.odometry.slip = value);
+        refused(&|params| params.camera.rotation = value);
+        refused(&|params| params.search.interval = value);
+        refused(&|params| params.occlusion.mean_time_hidden = value);
+        refused(&|params| params.min_effective_share = value);
     }
-    for shrink in [0, 81, u32::MAX] {
-        refused(&|params| params.acquisition.shrink = shrink);
-    }
+    refused(&|params| params.max_particles = 0);
+    refused(&|params| params.search.n_places = 0);
 }
 
 #[test]
