@@ -1,5 +1,4 @@
 use wayfix_gaussian_core::GaussianError;
-use wayfix_integrity::IntegrityError;
 use wayfix_kalman::KalmanError;
 use wayfix_particle::ParticleError;
 
@@ -82,9 +81,6 @@ pub enum ColorModelError {
     /// An error of a filter.
     #[error(transparent)]
     Kalman(#[from] KalmanError),
-    /// An error of the change test.
-    #[error(transparent)]
-    Integrity(#[from] IntegrityError),
     /// An error of the particles.
     #[error(transparent)]
     Particle(#[from] ParticleError),

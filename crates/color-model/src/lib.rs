@@ -20,13 +20,12 @@ pub use lighting::{
     SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
-    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch,
-    LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame, PixelLikelihood, PixelLikelihoodParams,
-    PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
+    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, LightErrorCorrelation, PixelLikelihood,
+    PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, gather,
 };
 pub use localizer::{
-    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
-    OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
+    AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
+    HiddenViews, LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
     KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,

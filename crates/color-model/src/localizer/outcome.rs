@@ -1,38 +1,38 @@
 use super::PoseEstimate;
 
-/// Result of one frame.
+/// What one frame did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// Pose of the body after the frame.
+    /// Where the robot is, after the frame.
     pub estimate: PoseEstimate,
-    /// Quality of the estimate.
+    /// What that estimate is worth.
     pub fix: Fix,
     /// Effective number of particles after weighing.
     pub effective_particles: f64,
-    /// Exponent of the likelihood, at most 1: below 1 while the particles are too far apart for the likelihood of the frame.
+    /// Power of the likelihood that left enough of them effective: below 1 while particles are too coarse for what the frame tells.
     pub tempering: f64,
-    /// Number of particles at the estimate.
+    /// Number of particles after the frame.
     pub n_particles: usize,
-    /// Log of the mean likelihood ratio to the background, nats a pixel, before tempering.
+    /// Log of the mean likelihood ratio to the background, nats a pixel of the image, before tempering.
     pub log_evidence_per_pixel: f64,
-    /// Log-likelihood of the image at the estimate relative to its average colours, nats a pixel: 0.2 to 0.5 where the image shows much of the map, 0 or less where
-    /// the background explains it better.
+    /// How much better the best place explains the frame than the colours that the frame shows on average, nats a pixel: 0.2 to 0.5 where the
+    /// robot sees much of the map, about 0 or less where it sees none of it, or is elsewhere.
     pub fit: f64,
-    /// Probability that the robot is at one of the alternative places.
-    pub alternative_probability: f64,
-    /// Number of places that are tracked: the estimate and its alternatives.
+    /// How long the recent fit has been low, as a share of the time after which the robot is looked for in doubt, 0 to 1.
+    pub kidnap_suspicion: f64,
+    /// Places that are still pursued.
     pub n_hypotheses: usize,
-    /// Probability of each light.
+    /// Probability of each member of the lighting bank.
     pub light_probabilities: Vec<f64>,
 }
 
-/// Quality of a pose estimate.
+/// What a pose estimate is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fix {
-    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place.
+    /// One narrow cluster has most of the weight, and what is seen has not spoken against it for long.
     Tracking,
-    /// Several places, or one that is wider.
+    /// Several places fit, or one wide one.
     Ambiguous,
-    /// The last frames together do not tell the map at the estimate from the background with 95 % probability. Do not use the pose.
+    /// No particle explains what is seen, or nothing was seen for long: do not use the pose.
     Lost,
 }
