@@ -53,7 +53,7 @@ const KEPT: usize = 255;
 /// Share of the views of far places below the sill: similar by chance. The sill needs at least one such sample.
 const SILL_QUANTILE: f64 = 0.1;
 /// Number of steps from which on a place is far, and the limit of [`ViewDistanceScale::to_meters`]: 5 m, another aisle, at four
-/// views per metre.
+/// views per meter.
 const FAR_STEPS: f64 = 20.0;
 
 impl ViewDistanceScale {
