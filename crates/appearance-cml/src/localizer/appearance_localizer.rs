@@ -190,11 +190,12 @@ where
         let matched = view.as_ref().map(|view| self.match_view(view)).transpose()?; // Eqs. 9-10
         let likelihood = matched.as_ref().map(|matched| &matched.likelihood);
         let mut belief = self.belief.fused(likelihood, sources, self.map.area(), &self.params)?; // Eqs. 1-8
+        let mut kidnap = self.kidnap.clone();
         let is_moved = match &view {
-            Some(view) => self.relocalize(view, &mut belief)?,
+            Some(view) => self.relocalize(view, &mut kidnap, &mut belief)?,
             None => false,
         };
-        let mut events = self.replace_belief(belief, is_moved)?;
+        let mut events = self.replace_belief(belief, kidnap, is_moved)?;
         if let Some(view) = view {
             self.has_seen = true;
             self.n_views = self.n_views.wrapping_add(1);
@@ -238,13 +239,18 @@ where
         self.belief.unimodal(min_weight).filter(|_| self.kidnap.probability() <= 1.0 - min_weight)
     }
 
-    /// Replaces the belief; `is_moved` says that an alternative has won.
-    fn replace_belief(&mut self, belief: Belief, is_moved: bool) -> Result<Vec<Event>, AppearanceMapError> {
+    /// Replaces the belief and its test; `is_moved` says that an alternative has won.
+    fn replace_belief(
+        &mut self,
+        belief: Belief,
+        kidnap: KidnapTest,
+        is_moved: bool,
+    ) -> Result<Vec<Event>, AppearanceMapError> {
         let is_elsewhere = match (belief.heaviest(), self.belief.heaviest()) {
             (Some(new), Some(old)) => separation_squared(new, old)? > self.params.fusion.gate,
             _ => false,
         };
-        self.belief = belief;
+        (self.belief, self.kidnap) = (belief, kidnap);
         let is_unimodal = self.one_place().is_some();
         let mut events = Vec::new();
         match (std::mem::replace(&mut self.was_unimodal, is_unimodal), is_unimodal) {

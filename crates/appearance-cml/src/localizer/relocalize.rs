@@ -83,8 +83,13 @@ fn log_ratio(test: Option<PlaceTest>, rate: f64) -> f64 {
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
     /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative wins.
     ///
-    /// Returns whether it did.
-    pub(super) fn relocalize(&mut self, view: &D, belief: &mut Belief) -> Result<bool, AppearanceMapError> {
+    /// Returns whether it did. `kidnap` is the test of the present hypothesis.
+    pub(super) fn relocalize(
+        &self,
+        view: &D,
+        kidnap: &mut KidnapTest,
+        belief: &mut Belief,
+    ) -> Result<bool, AppearanceMapError> {
         let Some(present) = self.belief.heaviest().filter(|_| self.params.recovery != Recovery::Off) else {
             return Ok(false);
         };
@@ -95,10 +100,10 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
         let sample = map.sample(view, self.n_views, N_FAR);
         let test = |at: Option<&Gaussian<Pose2<f64>>>| map.test_place(view, at?, &sample, &params.map);
 
-        let rate = self.kidnap.rate();
+        let rate = kidnap.rate();
         let ratio = |test| independence * log_ratio(test, rate);
 
-        let (kidnap, of_present) = (&mut self.kidnap, test(Some(present)));
+        let of_present = test(Some(present));
         kidnap.unsearched += distance;
         kidnap.alternatives.drive(distance)?;
         kidnap.alternatives.observe(ratio(of_present), |alternative| ratio(test(alternative.heaviest())))?;
