@@ -1,8 +1,9 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 142] = [
+const RENAMED: [(&str, &str); 146] = [
     ("accept", "gate_nis"),
+    ("acquisition", "search"),
     ("active", "forgetting_rate"),
     ("active_forgetting", "forgetting_rate"),
     ("adapt_above", "adapt_above_intersection"),
@@ -41,8 +42,8 @@ const RENAMED: [(&str, &str); 142] = [
     ("euler_range", "euler_number_range"),
     ("false_alarm_rate", "false_alarms_per_view"),
     ("first_kernel_m", "initial_kernel_m"),
-    ("floor", "log_likelihood_floor"),
     ("floor", "min_variance_share"),
+    ("floor", "outlier_share"),
     ("forget_after", "accept_change_after"),
     ("forgetting", "forgetting_mode"),
     ("forward", "forward_sigma_per_meter"),
@@ -54,6 +55,7 @@ const RENAMED: [(&str, &str); 142] = [
     ("heading_per_meter", "heading_sigma_per_meter"),
     ("heading_per_metre", "heading_sigma_per_meter"),
     ("heading_per_radian", "heading_sigma_per_radian"),
+    ("hidden_views", "occlusion"),
     ("increment", "increment_noise"),
     ("independent_rad", "correlation_angle_rad"),
     ("inertia", "previous_filter_weight"),
@@ -62,6 +64,7 @@ const RENAMED: [(&str, &str); 142] = [
     ("laser", "laser_pose"),
     ("leak", "kidnapping_probability"),
     ("learn_above", "learn_above_psr"),
+    ("least_effective", "min_effective_share"),
     ("least_share_seen", "min_detection_rate"),
     ("least_turn", "min_rotation"),
     ("least_way", "min_distance"),
@@ -78,8 +81,10 @@ const RENAMED: [(&str, &str); 142] = [
     ("map", "covariance_update"),
     ("match_share", "match_limit_fraction"),
     ("max_count", "max_observation_count"),
+    ("max_particles_lost", "max_particles"),
     ("max_steps", "max_iterations"),
     ("mean_noise", "mean_color_variance"),
+    ("min_particles", "max_particles"),
     ("most", "max_components"),
     ("most_references", "max_references"),
     ("motion_width", "motion_sigma"),
@@ -133,8 +138,7 @@ const RENAMED: [(&str, &str); 142] = [
     ("tolerance", "same_place_tolerance"),
     ("tone", "intensity_scale"),
     ("uneven_brightness", "brightness_variation"),
-    ("uneven_chroma", "chroma_variation"),
-    ("uniform_share", "uniform_background_share"),
+    ("uneven_chroma", "brightness_variation"),
     ("unimodal", "unimodal_weight"),
     ("unseen", "unseen_colors"),
     ("velocity", "velocity_noise"),
@@ -153,7 +157,12 @@ pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>
 }
 
 /// Old name, a name beside which it stood, and what replaces it.
-const REPLACED: [(&str, &str, &str); 9] = [
+const REPLACED: [(&str, &str, &str); 14] = [
+    ("doubtful_fit", "relocalization", "`relocalization` decides when the robot has been moved"),
+    ("fast_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
+    ("lost_fit", "relocalization", "a pose is lost if the last frames do not tell it from the background"),
+    ("resample_below", "relocalization", "every frame resamples"),
+    ("slow_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("delay", "unimodal_weight", "a view waits until the robot is a match radius away"),
     (
         "insertion",
