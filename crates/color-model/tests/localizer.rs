@@ -70,7 +70,7 @@ fn follow(localizer: &mut ColorLocalizer, views: &[View], rng: &mut ChaCha8Rng) 
 fn a_robot_is_found_from_a_rough_start_and_followed() {
     let mut scene = Scene::new();
     for (seed, body) in [(1, Pose2::new(0.5, 0.2, 0.4)), (2, Pose2::new(-1.0, -0.5, 2.5))] {
-        let (views, truth) = drive(&mut scene, body, 16, seed);
+        let (views, truth) = drive(&mut scene, body, 32, seed);
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
         // Half of the default effort: coarser, the first search may miss the peak.

@@ -38,7 +38,8 @@ enum Kind {
 /// Relocalization as a sequential test between the present hypothesis and alternatives. [Shiryaev 1963; Pollak 1985]
 ///
 /// An alternative $`j`$ with prior $`π_j`$ starts at $`R_j = π_j\, d\, Λ_j`$, where $`d`$ is the distance since the last search (at least 1 m) and
-/// $`Λ_j`$ the likelihood ratio of its measurements. These have selected the alternative, so they can make its odds $`p R_j`$ even and no more. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
+/// $`Λ_j`$ the likelihood ratio of its measurements. These have selected the alternative, so they can make the odds of all
+/// proposals together, $`p \sum_j R_j`$, even and no more. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
 /// largest statistic reaches $`A`$: the mean distance to a false alarm is at least $`A`$, since $`\sum_j π_j ≤ 1`$.
 ///
 /// At an unknown start all places are equally probable ([`start`](Self::start)): an alternative with the likelihood ratio $`Λ_j`$ has the odds
@@ -129,10 +130,12 @@ impl<H> RelocalizationTest<H> {
         let start = |RelocalizationCandidate { hypothesis, prior, log_likelihood_ratio }| {
             check("prior", prior, prior > 0.0 && prior <= 1.0, "above 0, at most 1")?;
             check_ratio(log_likelihood_ratio)?;
-            let statistic = times(prior * distance, log_likelihood_ratio).min(even);
+            let statistic = times(prior * distance, log_likelihood_ratio);
             Ok(AlternativeHypothesis { hypothesis, statistic, kind: Kind::Proposed { prior } })
         };
-        let started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
+        let mut started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
+        let total: f64 = started.iter().map(|one| one.statistic / even).sum();
+        started.iter_mut().for_each(|one| one.statistic /= total.max(1.0));
         self.alternatives.extend(started);
         self.distance = 0.0;
         self.remove_hopeless();

@@ -220,6 +220,7 @@ where
         buffer.push(newest, self.params.search.n_frames);
         let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
         if relocalization.decide(&mut present) {
+            present.set_max_particles(self.params.max_particles);
             buffer.forget_evidence();
         }
 
@@ -243,7 +244,7 @@ where
         let seconds = self.delta.seconds;
         filter.predict_lighting(seconds)?; // Eq. 6
         filter.weigh(frame, seconds, &self.params, rng)?; // Eqs. 14–16
-        let ancestors = filter.resample(&self.params, rng)?;
+        let ancestors = filter.resample(rng)?;
         filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
     }
 
@@ -281,6 +282,7 @@ where
         if is_start {
             let best = found.remove(0);
             *present = best.filter;
+            present.set_max_particles(self.params.max_particles);
             let even =
                 found.into_iter().map(|one| (one.filter, share * (one.log_evidence - best.log_evidence)));
             relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;
@@ -304,12 +306,12 @@ where
         Ok(true)
     }
 
-    /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`. Errors of the likelihood have the size
-    /// of the area that an independent pixel stands for; a view that has moved by that size in the image is a new one.
+    /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`: what is not on the map, as another robot,
+    /// stays in view until the camera has turned by its field of view, and is one error until then.
     fn independent_share(&self, angle: f64) -> f64 {
-        let n_pixels = f64::from(self.camera.width() * self.camera.height());
-        let size = (n_pixels / self.params.pixels.independent_pixels.min(n_pixels)).sqrt();
-        (angle * self.camera.fx() / size).min(1.0)
+        let half = f64::from(self.camera.height()) / 2.0;
+        let field_of_view = 2.0 * (half / self.camera.fy()).atan();
+        (angle / field_of_view).min(1.0)
     }
 
     /// Number of distinguishable places on the map: of cells of the size of a place.

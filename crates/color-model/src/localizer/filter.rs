@@ -34,8 +34,9 @@ pub(crate) struct ColorParticle<T> {
 pub(crate) struct ColorFilter<T> {
     particles: Vec<ColorParticle<T>>,
     weights: NormalizedWeights,
-    /// Probability that the last view was hidden.
+    /// Probability that the view is hidden.
     hidden: f64,
+    max_particles: usize,
     /// Result of the last frame.
     pub(crate) weighing: Weighing,
 }
@@ -75,7 +76,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             effective_particles: particles.len() as f64,
             light_probabilities: (0..light.n_lights()).map(|at| light.light_probability(at)).collect(),
         };
-        Ok(Self { particles, weights, hidden: 0.0, weighing })
+        Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
     }
 
     /// Moves each particle.
@@ -154,12 +155,8 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
     }
 
     /// Draws the ancestors of the next generation, as many as their spread needs. [Fox 2003]
-    pub(crate) fn resample<R: Rng + ?Sized>(
-        &self,
-        params: &LocalizerParams,
-        rng: &mut R,
-    ) -> Result<Vec<usize>, ColorModelError> {
-        let n = n_particles(&self.particles, &self.weights, params, rng)?;
+    pub(crate) fn resample<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<usize>, ColorModelError> {
+        let n = n_particles(&self.particles, &self.weights, self.max_particles, rng)?;
         Ok(SystematicResampler.ancestors(&self.weights, n, rng)?)
     }
 
@@ -197,6 +194,10 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
     pub(crate) fn light(&self) -> Option<&Arc<T>> {
         let weighted = self.particles.iter().zip(self.weights.as_slice());
         weighted.max_by(|a, b| a.1.total_cmp(b.1)).map(|(particle, _)| particle.state.shared_conditional())
+    }
+
+    pub(crate) fn set_max_particles(&mut self, max_particles: usize) {
+        self.max_particles = max_particles;
     }
 
     pub(crate) fn n_particles(&self) -> usize {
@@ -274,10 +275,9 @@ pub(crate) fn tempered(
 fn n_particles<T, R: Rng + ?Sized>(
     particles: &[ColorParticle<T>],
     weights: &NormalizedWeights,
-    params: &LocalizerParams,
+    max: usize,
     rng: &mut R,
 ) -> Result<usize, ColorModelError> {
-    let max = params.max_particles;
     let kld = KldSampling::new(KldParams {
         min_particles: max.div_ceil(2),
         max_particles: max,

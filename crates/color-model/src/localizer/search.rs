@@ -144,7 +144,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             })?;
             retain_places(&mut candidates, params.n_places >> (round + 1).min(N_HALVINGS));
         }
-        candidates.iter().map(|candidate| self.found(candidate, rng)).collect()
+        let n_particles = self.params.max_particles.div_ceil(candidates.len().max(1));
+        candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()
     }
 
     /// A candidate that the start allows. If that is anywhere, every other one shows a landmark where a frame does.
@@ -270,6 +271,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     fn found<R: Rng + ?Sized>(
         &self,
         candidate: &Candidate,
+        n_particles: usize,
         rng: &mut R,
     ) -> Result<Found<T>, ColorModelError> {
         let mut light = T::clone(self.light);
@@ -285,7 +287,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             self.area.clamp(&mut body);
             CameraLocation { body, ..newest }
         };
-        let filter = ColorFilter::new((0..self.params.max_particles).map(location), &Arc::new(light))?;
+        let filter = ColorFilter::new((0..n_particles).map(location), &Arc::new(light))?;
         Ok(Found {
             filter,
             place: candidate.trajectory.newest,
