@@ -93,7 +93,8 @@ impl<H> RelocalizationTest<H> {
     }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
-        self.params.probability(self.alternatives.iter().map(AlternativeHypothesis::statistic).sum())
+        let statistics = self.alternatives.iter().map(AlternativeHypothesis::statistic);
+        self.params.probability(statistics.fold(0.0, |sum, one| sum + one))
     }
     /// Removes all alternatives.
     pub fn clear(&mut self) {

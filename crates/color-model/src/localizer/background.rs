@@ -11,10 +11,16 @@ use crate::{PixelLikelihoodParams, YuvImage};
 /// together. Otherwise it would explain the pixels of a homogeneous region better than the region's own colour. One pseudo-count is shared by all cells. [Perks 1947]
 pub(crate) struct ImageHistogram {
     widths: Vector3<f64>,
+    /// First cell of the box that the colours of the images fill, and its size.
+    first: [usize; 3],
     sizes: [usize; 3],
     counts: Vec<f32>,
+    pseudo_count: f64,
     log_total: f64,
 }
+
+/// Cells about the box that stay empty until the last pass of smoothing, so that no count is lost.
+const REACH: usize = 3;
 
 impl ImageHistogram {
     /// Counts the pixels of `images`; `noise` is the variance of a pixel by noise.
@@ -23,59 +29,63 @@ impl ImageHistogram {
         noise: &Vector3<f64>,
         params: &PixelLikelihoodParams,
     ) -> Self {
-        let (mut sum, mut n) = (Vector3::zeros(), 0.0);
-        for pixel in images.clone().flat_map(YuvImage::pixels) {
+        let pixels = || images.clone().flat_map(YuvImage::pixels);
+        let (mut sum, mut n, mut range) = (Vector3::zeros(), 0_usize, [[u8::MAX, 0]; 3]);
+        for pixel in pixels() {
             sum += Vector3::from(pixel.map(f64::from));
-            n += 1.0;
+            n += 1;
+            for ([least, most], value) in range.iter_mut().zip(pixel) {
+                (*least, *most) = ((*least).min(*value), (*most).max(*value));
+            }
         }
-        let variance = noise + params.shade(&(sum / f64::max(n, 1.0))).diagonal();
+        let variance = noise + params.shade(&(sum / n.max(1) as f64)).diagonal();
         // A cell itself has 1/12 of its squared width, and smoothing adds one squared width.
         let variance = variance / (1.0 + 1.0 / 12.0);
         // A cell is at least one value wide and at most the whole range.
         let widths = variance.map(|variance| variance.sqrt().clamp(1.0, 255.0));
-        let sizes: [usize; 3] = widths.map(|width| (255.0 / width) as usize + 1).into();
+        let cell = |channel: usize, value: u8| (f64::from(value) / widths[channel]) as usize;
+        let n_cells: usize = (0..3).map(|channel| cell(channel, u8::MAX) + 1).product();
+        let first = [0, 1, 2].map(|at| cell(at, range[at][0].min(range[at][1])).saturating_sub(REACH));
+        let sizes = [0, 1, 2]
+            .map(|at| (cell(at, range[at][1]) + REACH).min(cell(at, u8::MAX)).saturating_sub(first[at]) + 1);
+        let pseudo_count = 1.0 / n_cells as f64;
         let counts = vec![0.0; sizes.iter().product()];
-        let mut histogram = Self { widths, sizes, counts, log_total: 0.0 };
-        for pixel in images.flat_map(YuvImage::pixels) {
-            let at = histogram.index(*pixel);
-            histogram.counts[at] += 1.0;
+        let mut histogram = Self { widths, first, sizes, counts, pseudo_count, log_total: 0.0 };
+        for pixel in pixels() {
+            if let Some(at) = histogram.index(*pixel) {
+                histogram.counts[at] += 1.0;
+            }
         }
         for channel in [0, 1, 2, 0, 1, 2] {
             histogram.smooth(channel);
         }
-        let pseudo_count = 1.0 / histogram.counts.len() as f32;
-        histogram.counts.iter_mut().for_each(|count| *count += pseudo_count);
-        let total: f64 = histogram.counts.iter().copied().map(f64::from).sum();
+        let total = 1.0 + histogram.counts.iter().copied().map(f64::from).sum::<f64>();
         histogram.log_total = (total * widths.product()).ln();
         histogram
     }
 
     /// $`-\ln p_{bg}(c)`$, in nats.
     pub(crate) fn nats(&self, pixel: [u8; 3]) -> f64 {
-        self.log_total - f64::from(self.counts[self.index(pixel)]).ln()
+        let count = self.index(pixel).map_or(0.0, |at| f64::from(self.counts[at]));
+        self.log_total - (count + self.pseudo_count).ln()
     }
 
-    fn index(&self, pixel: [u8; 3]) -> usize {
-        let [y, u, v] = [0, 1, 2].map(|channel| (f64::from(pixel[channel]) / self.widths[channel]) as usize);
-        (y * self.sizes[1] + u) * self.sizes[2] + v
+    fn index(&self, pixel: [u8; 3]) -> Option<usize> {
+        (0..3).try_fold(0, |index, at| {
+            let cell = ((f64::from(pixel[at]) / self.widths[at]) as usize).checked_sub(self.first[at])?;
+            (cell < self.sizes[at]).then_some(index * self.sizes[at] + cell)
+        })
     }
 
     /// Averages each cell with the next one, forwards and backwards: the binomial kernel, whose variance is half of a squared cell.
     fn smooth(&mut self, channel: usize) {
         let stride: usize = self.sizes[channel + 1..].iter().product();
-        let size = self.sizes[channel];
-        for block in self.counts.chunks_mut(stride * size) {
-            for at in 1..size {
-                for lane in 0..stride {
-                    let mean = (block[(at - 1) * stride + lane] + block[at * stride + lane]) / 2.0;
-                    block[(at - 1) * stride + lane] = mean;
-                }
+        for block in self.counts.chunks_mut(stride * self.sizes[channel]) {
+            for at in stride..block.len() {
+                block[at - stride] = f32::midpoint(block[at - stride], block[at]);
             }
-            for at in (1..size).rev() {
-                for lane in 0..stride {
-                    let mean = (block[(at - 1) * stride + lane] + block[at * stride + lane]) / 2.0;
-                    block[at * stride + lane] = mean;
-                }
+            for at in (stride..block.len()).rev() {
+                block[at] = f32::midpoint(block[at - stride], block[at]);
             }
         }
     }
@@ -98,7 +108,7 @@ mod tests {
         let cell = |at: [usize; 3]| {
             [0, 1, 2].map(|channel| ((at[channel] as f64 + 0.5) * histogram.widths[channel]) as u8)
         };
-        let [n_y, n_u, n_v] = histogram.sizes;
+        let [n_y, n_u, n_v] = [0, 1, 2].map(|channel| (255.0 / histogram.widths[channel]) as usize + 1);
         let cells = (0..n_y).flat_map(|y| (0..n_u).flat_map(move |u| (0..n_v).map(move |v| [y, u, v])));
         let sum: f64 = cells.map(|at| (-histogram.nats(cell(at))).exp() * volume).sum();
         assert!((sum - 1.0).abs() < 1e-3, "{sum}"); // single-precision counts

@@ -74,6 +74,8 @@ pub struct ColorLocalizer<T = LightingBank, M = OdometryNoise, L = PixelLikeliho
     /// Since the last frame.
     delta: OdometryDelta,
     buffer: FrameBuffer,
+    /// The light of the most probable place before each frame of the buffer.
+    lights: VecDeque<Arc<T>>,
     n_updates: usize,
     /// Since the last search, s.
     since_search: f64,
@@ -138,6 +140,7 @@ where
             prior,
             delta: OdometryDelta::default(),
             buffer: FrameBuffer::default(),
+            lights: VecDeque::new(),
             n_updates: 0,
             since_search: 0.0,
             log_ratios: VecDeque::new(),
@@ -204,6 +207,7 @@ where
         let scene = self.scene(&self.likelihood);
         let frame = PreparedFrame::new(&scene, image, mount, &self.colors()?)?;
         let mut present = self.present.clone();
+        let light = self.present.light().unwrap_or(&self.prior).clone();
         self.step(&mut present, &frame, rng)?;
         let mut relocalization = self.relocalization.clone();
         let odometry = self.delta;
@@ -227,8 +231,10 @@ where
         self.n_updates += 1;
         self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
         self.log_ratios.push_back(present.weighing.mean_log_likelihood);
+        self.lights.push_back(light);
         let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_frames);
         self.log_ratios.drain(..n_old);
+        self.lights.drain(..n_old);
         (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
         self.delta = OdometryDelta::default();
         self.outcome()
@@ -273,7 +279,7 @@ where
             self.scene(&self.params.pixels),
             (&self.area, start),
             &self.params,
-            &self.prior,
+            [&self.prior, self.lights.front().unwrap_or(&self.prior)],
             frames,
         )?;
         let here = if is_first { None } else { Some(*present.estimate()?.pose.mean()) };

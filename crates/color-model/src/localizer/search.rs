@@ -42,8 +42,8 @@ pub(crate) struct Search<'a, T> {
     area: &'a Area,
     start: &'a Start,
     params: &'a LocalizerParams,
-    /// The light before the first frame: one that was learned at a wrong place would hide the true one.
-    light: &'a Arc<T>,
+    /// The light before the first frame of all, and the one before the buffered frames: the latter is the better one if the place was right.
+    lights: [&'a Arc<T>; 2],
     buffered: Vec<BufferedFrame>,
     frames: Vec<PrefixSumImage>,
     detections: Detections,
@@ -65,8 +65,8 @@ struct Candidate {
     trajectory: Trajectory,
     /// Sums of every colour over the frames that are not hidden.
     sums: Vec<PixelSums>,
-    /// The most probable light.
-    light: usize,
+    /// The most probable light: of which tracker, and which of its lights.
+    light: (usize, usize),
     log_evidence: LogWeight,
     /// Scale of the next step of the pose, and of the errors.
     steps: [f64; 2],
@@ -96,7 +96,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         scene: Scene<'a, PixelLikelihoodParams>,
         (area, start): (&'a Area, &'a Start),
         params: &'a LocalizerParams,
-        light: &'a Arc<T>,
+        lights: [&'a Arc<T>; 2],
         buffered: Vec<BufferedFrame>,
     ) -> Result<Self, ColorModelError> {
         let camera = scene.camera.shrunk(SHRINK).map_err(|_| ColorModelError::EmptyMap)?;
@@ -112,15 +112,16 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             .map(|image| PrefixSumImage::with_background(image, |pixel| Some(nats(pixel))))
             .collect::<Result<_, _>>()?;
         let mut detections = Detections::new(scene.map);
-        for at in 0..light.n_lights() {
-            let classifier = PixelClassifier::new(scene.pixels.shaded(light.colors_in(at)?))?;
+        let every = lights.iter().flat_map(|light| (0..light.n_lights()).map(|at| light.colors_in(at)));
+        for colors in every {
+            let classifier = PixelClassifier::new(scene.pixels.shaded(colors?))?;
             for (frame, image) in images.iter().enumerate() {
                 let label = |pixel: &[u8; 3]| classifier.classify_above(*pixel, -nats(*pixel));
                 let labels: Vec<u8> = image.pixels().iter().map(label).collect();
                 detections.add(&labels, frame, &buffered[frame], &scene.camera)?;
             }
         }
-        Ok(Self { scene, area, start, params, light, buffered, frames, detections })
+        Ok(Self { scene, area, start, params, lights, buffered, frames, detections })
     }
 
     /// The places that explain the frames best, the best first, among those that the start allows, and the `known` one.
@@ -162,7 +163,14 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut trajectory = Trajectory::through(pose, at, &self.buffered);
         self.area.clamp(&mut trajectory.newest);
         let sums = vec![PixelSums::default(); self.scene.map.colors().len()];
-        Candidate { trajectory, sums, light: 0, log_evidence: f64::NEG_INFINITY, steps: [0.5, 1.0], known }
+        Candidate {
+            trajectory,
+            sums,
+            light: (0, 0),
+            log_evidence: f64::NEG_INFINITY,
+            steps: [0.5, 1.0],
+            known,
+        }
     }
 
     /// Tries a step of the whole trajectory, and a step of the errors at one frame.
@@ -246,8 +254,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         candidate.log_evidence += constant;
     }
 
-    /// The most probable light, and the log-likelihood that all lights sum to.
-    fn evidence(&self, scratch: &mut Scratch, sums: &[PixelSums]) -> (usize, LogWeight) {
+    /// The most probable light, and the log-likelihood that all lights sum to. Both trackers are equally probable.
+    fn evidence(&self, scratch: &mut Scratch, sums: &[PixelSums]) -> ((usize, usize), LogWeight) {
         let frame = PixelFrame {
             n_pixels: self.frames.first().map_or(1, PrefixSumImage::n_pixels),
             pixel_color_variance: self.scene.noise.pixel_color_variance,
@@ -255,16 +263,19 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         };
         let Scratch { values, joint, .. } = scratch;
         let view = PoseView { camera_pose: &Pose3::identity(), sums };
-        values.resize(self.light.n_lights(), 0.0);
-        self.scene.pixels.log_likelihoods(&frame, joint, &view, &**self.light, values);
-        for (at, value) in values.iter_mut().enumerate() {
-            *value += self.light.light_probability(at).ln();
-            if value.is_nan() {
-                *value = f64::NEG_INFINITY;
+        let n_lights = self.lights[0].n_lights();
+        values.resize(2 * n_lights, 0.0);
+        for (light, values) in self.lights.iter().zip(values.chunks_mut(n_lights)) {
+            self.scene.pixels.log_likelihoods(&frame, joint, &view, &***light, values);
+            for (at, value) in values.iter_mut().enumerate() {
+                *value += (light.light_probability(at) / 2.0).ln();
+                if value.is_nan() {
+                    *value = f64::NEG_INFINITY;
+                }
             }
         }
         let best = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(at, _)| at);
-        (best, log_sum_exp(values))
+        ((best / n_lights, best % n_lights), log_sum_exp(values))
     }
 
     /// Particles about a candidate, spread by its last step, with the light that all frames show from there.
@@ -274,9 +285,10 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         n_particles: usize,
         rng: &mut R,
     ) -> Result<Found<T>, ColorModelError> {
-        let mut light = T::clone(self.light);
+        let (tracker, at) = candidate.light;
+        let mut light = T::clone(self.lights[tracker]);
         // A tracker that refuses the means keeps its prior.
-        let _ = light.update_in(candidate.light, &color_means(&candidate.sums, self.params));
+        let _ = light.update_in(at, &color_means(&candidate.sums, self.params));
         let newest = candidate
             .trajectory
             .locations(&self.buffered, &self.params.camera)
