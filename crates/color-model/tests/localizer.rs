@@ -154,7 +154,7 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
         refused(&|params| params.camera.rotation = value);
         refused(&|params| params.search.interval = value);
         refused(&|params| params.occlusion.mean_time_hidden = value);
-        refused(&|params| params.min_effective_share = value);
+        refused(&|params| params.tempering_min_ess_share = value);
     }
     refused(&|params| params.max_particles = 0);
     refused(&|params| params.search.n_places = 0);

@@ -127,7 +127,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         let hidden = params.occlusion.predict(self.hidden, seconds);
         let evidence = |particle: &ColorParticle<T>| or_hidden(particle.log_likelihood, hidden);
         let evidences: Vec<f64> = self.particles.iter().map(evidence).collect();
-        let least = params.min_effective_share * self.weights.effective_sample_size();
+        let least = params.tempering_min_ess_share * self.weights.effective_sample_size();
         let (weights, tempering) = tempered(&evidences, &self.weights, least)?;
         let joint = evidences.iter().zip(self.weights.as_slice()).map(|(l, w)| l + w.ln());
         let n_lights = self.particles.first().map_or(0, |particle| particle.state.conditional().n_lights());

@@ -31,7 +31,7 @@ pub struct LocalizerParams {
     /// Largest number of particles of a place; the smallest is half of it. Default 1000.
     pub max_particles: usize,
     /// Smallest share of the effective particles that a frame leaves; its likelihood is tempered for that. 0 never tempers. Default 0.2.
-    pub min_effective_share: f64,
+    pub tempering_min_ess_share: f64,
     /// Smallest number of pixels from which the mean of a colour is taken. Default 30.
     pub min_pixels: u64,
     /// How often and for how long an object hides the whole view.
@@ -77,7 +77,7 @@ impl Default for LocalizerParams {
             search: SearchParams::default(),
             relocalization: RelocalizationParams::default(),
             max_particles: 1000,
-            min_effective_share: 0.2,
+            tempering_min_ess_share: 0.2,
             min_pixels: 30,
             occlusion: Occlusion::default(),
             withheld: None,
@@ -93,7 +93,7 @@ impl LocalizerParams {
             pixels: PixelLikelihoodParams::as_published(),
             search: SearchParams { n_drawn: 0, ..SearchParams::default() },
             relocalization: RelocalizationParams::off(),
-            min_effective_share: 0.0,
+            tempering_min_ess_share: 0.0,
             occlusion: Occlusion { mean_time_hidden: 0.0, ..Occlusion::default() },
             ..Self::default()
         }
@@ -121,7 +121,12 @@ impl LocalizerParams {
         check("number of places", self.search.n_places as f64, 1.0, f64::MAX)?;
         check("number of moves", f64::from(self.search.n_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
-        check("smallest effective share", self.min_effective_share, 0.0, 1.0)?;
+        check(
+            "smallest share of effective particles after tempering",
+            self.tempering_min_ess_share,
+            0.0,
+            1.0,
+        )?;
         check("mean time of a free view (s)", self.occlusion.mean_time_free, f64::MIN_POSITIVE, f64::MAX)?;
         check("mean time of a hidden view (s)", self.occlusion.mean_time_hidden, 0.0, f64::MAX)
     }
