@@ -108,11 +108,11 @@ fn robot_is_found_from_an_unknown_start_and_after_kidnapping() {
 
 #[test]
 fn person_who_passes_by_makes_no_reference() {
-    let references = |reject_outliers: bool| {
+    let references = |skip_outlier_views_in_mapping: bool| {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let field = Field::new(&mut rng);
         let map = taught(&field, &mut rng);
-        let params = LocalizerParams { reject_outliers, ..LocalizerParams::default() };
+        let params = LocalizerParams { skip_outlier_views_in_mapping, ..LocalizerParams::default() };
         let mut localizer =
             Localizer::with_map(params, map, Start::Known(known(way()[0]))).expect("valid defaults");
         let mut made = Vec::new();

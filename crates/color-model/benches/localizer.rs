@@ -65,7 +65,7 @@ fn main() {
     report("classify 208x160, table", 50, || table.classify_image(&image));
     report("compile the table", 3, || ColorLookUpTable::new(light.clone(), None));
 
-    let params = LocalizerParams { min_particles: 1000, ..LocalizerParams::default() };
+    let params = LocalizerParams::default();
     let start = Start::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut localizer =

@@ -1,4 +1,5 @@
 use wayfix_gaussian_core::GaussianError;
+use wayfix_integrity::IntegrityError;
 use wayfix_kalman::KalmanError;
 use wayfix_particle::ParticleError;
 
@@ -81,6 +82,9 @@ pub enum ColorModelError {
     /// An error of a filter.
     #[error(transparent)]
     Kalman(#[from] KalmanError),
+    /// An error of the change test.
+    #[error(transparent)]
+    Integrity(#[from] IntegrityError),
     /// An error of the particles.
     #[error(transparent)]
     Particle(#[from] ParticleError),

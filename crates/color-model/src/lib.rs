@@ -20,12 +20,13 @@ pub use lighting::{
     SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
-    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, LightErrorCorrelation, PixelLikelihood,
-    PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, gather,
+    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch,
+    LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame, PixelLikelihood, PixelLikelihoodParams,
+    PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
-    AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
-    HiddenViews, LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
+    OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
 };
 pub use prior::{
     KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,

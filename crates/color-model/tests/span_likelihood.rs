@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera, PostBand};
 use wayfix_color_model::{
-    CameraPoseLikelihood, ColorDensity, ColorModelError, LightErrorCorrelation, PixelLikelihood,
-    PixelLikelihoodParams, PixelSpanLikelihood, PrefixSumImage, YuvImage,
+    CameraPoseLikelihood, ColorDensity, ColorModelError, PixelLikelihood, PixelLikelihoodParams,
+    PixelSpanLikelihood, PrefixSumImage, YuvImage,
 };
 use wayfix_estimation_traits::Pose3;
 
@@ -101,17 +101,9 @@ fn largest_difference(params: PixelLikelihoodParams, n_poses: usize) -> f64 {
     largest
 }
 
-/// Untempered, without a floor: the plain product of Eq. 16.
+/// The plain product of Eq. 16; the image has outliers, whose cost must not hide the rest.
 fn product() -> PixelLikelihoodParams {
-    let independent_pixels = f64::from(COLUMNS * ROWS);
-    let floor = f64::INFINITY;
-    PixelLikelihoodParams {
-        light_error_correlation: LightErrorCorrelation::Each,
-        independent_pixels,
-        log_likelihood_floor: floor,
-        edge_margin_pixels: 0,
-        ..PixelLikelihoodParams::default()
-    }
+    PixelLikelihoodParams { outlier_share: 1e-9, ..PixelLikelihoodParams::as_published() }
 }
 
 // Sums are exact integers, so what is left is rounding in one quadratic form a colour: 255² against variances of 30 and more cancel three
@@ -123,7 +115,7 @@ fn spans_are_pixels_to_nine_digits() {
 
 #[test]
 fn so_they_are_with_floor_and_margin() {
-    let floored = PixelLikelihoodParams { log_likelihood_floor: 3.0, ..product() };
+    let floored = PixelLikelihoodParams { outlier_share: 0.05, ..product() };
     assert!(largest_difference(floored, 1000) < 1e-9);
     let inner = PixelLikelihoodParams { edge_margin_pixels: 2, ..product() };
     assert!(largest_difference(inner, 300) < 1e-9);

@@ -51,13 +51,13 @@ impl PaperSceneRows {
         Self::ALL.into_iter().find(|scene| scene.name == name)
     }
 
-    /// The paper's value of a figure: `p_between_mean` (Table 1), `p_same_min`, `p_same_max`, `p_same_mean` (Table 2), `successes` (Table 3).
+    /// The paper's value of a figure: `p_value_between_states_mean` (Table 1), `p_value_same_state_min`, `p_value_same_state_max`, `p_value_same_state_mean` (Table 2), `successes` (Table 3).
     pub fn figure(&self, feature: DescriptorKind, figure: &str) -> Option<f64> {
         let row = match figure {
-            "p_between_mean" => &self.between,
-            "p_same_min" => &self.same[0],
-            "p_same_max" => &self.same[1],
-            "p_same_mean" => &self.same[2],
+            "p_value_between_states_mean" => &self.between,
+            "p_value_same_state_min" => &self.same[0],
+            "p_value_same_state_max" => &self.same[1],
+            "p_value_same_state_mean" => &self.same[2],
             "successes" => &self.successes,
             _ => return None,
         };

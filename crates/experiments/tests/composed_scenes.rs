@@ -60,8 +60,11 @@ fn a_visit_that_is_no_camera_is_refused() {
 fn views_that_did_not_change_are_the_same() {
     let run = unchanged();
     let metrics = views::p_value_metrics(&run.system).unwrap();
-    assert_eq!([figure(&metrics, "p_same_min"), figure(&metrics, "p_same_max")], [1.0, 1.0]);
-    assert!(figure(&metrics, "p_between_mean") < 0.5, "{metrics:?}");
+    assert_eq!(
+        [figure(&metrics, "p_value_same_state_min"), figure(&metrics, "p_value_same_state_max")],
+        [1.0, 1.0]
+    );
+    assert!(figure(&metrics, "p_value_between_states_mean") < 0.5, "{metrics:?}");
 }
 
 #[test]
@@ -116,6 +119,6 @@ fn tables_need_no_files_and_are_the_same_every_time() {
     let successes =
         first[0].metrics.iter().find(|metric| metric.name == "hist6_whole_scene_successes").unwrap();
     assert_eq!(successes.paper, Some(51.0), "Table 3");
-    assert!(first[0].metrics.iter().any(|metric| metric.name == "fft6_whole_scene_p_same_mean"));
+    assert!(first[0].metrics.iter().any(|metric| metric.name == "fft6_whole_scene_p_value_same_state_mean"));
     assert!(first[1].error.as_ref().is_some_and(|error| error.contains("attic")), "{:?}", first[1].error);
 }

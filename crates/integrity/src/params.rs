@@ -16,7 +16,7 @@ use crate::error::{IntegrityError, check};
     serde(default, deny_unknown_fields)
 )]
 pub struct RelocalizationParams {
-    /// Largest mean number of false alarms per km of driving. Default 0.01: a robot that drives 10 km a day has one in ten days.
+    /// Largest mean number of false alarms per km of driving; 0 switches relocalization off. Default 0.01: a robot that drives 10 km a day has one in ten days.
     pub false_alarms_per_km: f64,
     /// Prior mean number of times that somebody moves the robot, per km of driving; above `false_alarms_per_km`. Default 1.
     pub kidnappings_per_km: f64,
@@ -43,8 +43,8 @@ impl RelocalizationParams {
         check(
             "false_alarms_per_km",
             false_alarms_per_km,
-            positive(false_alarms_per_km),
-            "positive and finite",
+            false_alarms_per_km == 0.0 || positive(false_alarms_per_km),
+            "finite and not negative",
         )?;
         let is_above = positive(kidnappings_per_km) && kidnappings_per_km > false_alarms_per_km;
         check("kidnappings_per_km", kidnappings_per_km, is_above, "finite and above false_alarms_per_km")?;
@@ -54,6 +54,16 @@ impl RelocalizationParams {
             alternative_kept_distance >= 0.0,
             "0 or more",
         )
+    }
+
+    /// No relocalization: the present hypothesis is never replaced.
+    pub fn off() -> Self {
+        Self { false_alarms_per_km: 0.0, ..Self::default() }
+    }
+
+    /// Whether relocalization is off.
+    pub fn is_off(&self) -> bool {
+        self.false_alarms_per_km == 0.0
     }
 
     /// The statistic at which a change is decided: the mean distance between false alarms, m.

@@ -27,6 +27,8 @@ pub struct AlternativeHypothesis<H> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
+    /// As probable as the present hypothesis before any measurement.
+    Start,
     /// Of a search, with its prior.
     Proposed { prior: f64 },
     /// It was the present hypothesis; the distance driven since, m.
@@ -36,11 +38,15 @@ enum Kind {
 /// Relocalization as a sequential test between the present hypothesis and alternatives. [Shiryaev 1963; Pollak 1985]
 ///
 /// An alternative $`j`$ with prior $`π_j`$ starts at $`R_j = π_j\, d\, Λ_j`$, where $`d`$ is the distance since the last search (at least 1 m) and
-/// $`Λ_j`$ the likelihood ratio of its measurements. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
+/// $`Λ_j`$ the likelihood ratio of its measurements. These have selected the alternative, so they can make the odds of all
+/// proposals together, $`p \sum_j R_j`$, even and no more. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
 /// largest statistic reaches $`A`$: the mean distance to a false alarm is at least $`A`$, since $`\sum_j π_j ≤ 1`$.
 ///
+/// At an unknown start all places are equally probable ([`start`](Self::start)): an alternative with the likelihood ratio $`Λ_j`$ has the odds
+/// $`p R_j = Λ_j`$ and replaces the present hypothesis when they reach 1.
+///
 /// The replaced hypothesis remains an alternative for a distance, with the odds that it has: $`p R = (p R_j)^{-1}`$.
-/// An alternative whose statistic is less than what a new search would give it, $`π_j d`$, is removed.
+/// An alternative is removed when its odds have fallen by the factor $`p A`$, the odds of a decision.
 ///
 /// ```
 /// use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest, RelocalizationParams};
@@ -87,7 +93,8 @@ impl<H> RelocalizationTest<H> {
     }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
-        self.params.probability(self.alternatives.iter().map(AlternativeHypothesis::statistic).sum())
+        let statistics = self.alternatives.iter().map(AlternativeHypothesis::statistic);
+        self.params.probability(statistics.fold(0.0, |sum, one| sum + one))
     }
     /// Removes all alternatives.
     pub fn clear(&mut self) {
@@ -101,13 +108,13 @@ impl<H> RelocalizationTest<H> {
     pub fn drive(&mut self, distance: f64) -> Result<(), IntegrityError> {
         check_distance(distance)?;
         self.distance += distance;
-        let kept_distance = self.params.alternative_kept_distance;
+        let alternative_kept_distance = self.params.alternative_kept_distance;
         self.alternatives.retain_mut(|alternative| match &mut alternative.kind {
             Kind::Previous { distance: since } => {
                 *since += distance;
-                *since <= kept_distance
+                *since <= alternative_kept_distance
             }
-            Kind::Proposed { .. } => true,
+            Kind::Proposed { .. } | Kind::Start => true,
         });
         Ok(())
     }
@@ -120,15 +127,38 @@ impl<H> RelocalizationTest<H> {
         &mut self,
         proposals: impl IntoIterator<Item = RelocalizationCandidate<H>>,
     ) -> Result<(), IntegrityError> {
-        let distance = self.search_distance();
+        let (distance, even) = (self.search_distance(), 1.0 / self.params.prior());
         let start = |RelocalizationCandidate { hypothesis, prior, log_likelihood_ratio }| {
             check("prior", prior, prior > 0.0 && prior <= 1.0, "above 0, at most 1")?;
             check_ratio(log_likelihood_ratio)?;
             let statistic = times(prior * distance, log_likelihood_ratio);
             Ok(AlternativeHypothesis { hypothesis, statistic, kind: Kind::Proposed { prior } })
         };
-        let started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
+        let mut started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
+        let total: f64 = started.iter().map(|one| one.statistic / even).sum();
+        started.iter_mut().for_each(|one| one.statistic /= total.max(1.0));
         self.alternatives.extend(started);
+        self.distance = 0.0;
+        self.remove_hopeless();
+        Ok(())
+    }
+
+    /// Replaces all alternatives: the start is unknown, and each of these hypotheses was as probable as the present one before the measurements.
+    /// Each comes with the log-likelihood ratio of its measurements against the present hypothesis, in nats.
+    ///
+    /// # Errors
+    /// Returns an error if a ratio is NaN; the alternatives are unchanged then.
+    pub fn start(&mut self, hypotheses: impl IntoIterator<Item = (H, f64)>) -> Result<(), IntegrityError> {
+        let even = 1.0 / self.params.prior();
+        let start = |(hypothesis, log_likelihood_ratio)| {
+            check_ratio(log_likelihood_ratio)?;
+            Ok(AlternativeHypothesis {
+                hypothesis,
+                statistic: times(even, log_likelihood_ratio),
+                kind: Kind::Start,
+            })
+        };
+        self.alternatives = hypotheses.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
         self.distance = 0.0;
         self.remove_hopeless();
         Ok(())
@@ -155,12 +185,9 @@ impl<H> RelocalizationTest<H> {
 
     /// Replaces `present` by the best alternative if its statistic reaches the threshold. Returns whether it did.
     pub fn decide(&mut self, present: &mut H) -> bool {
-        let by_statistic = |a: &(usize, &AlternativeHypothesis<H>),
-                            b: &(usize, &AlternativeHypothesis<H>)| {
-            a.1.statistic.total_cmp(&b.1.statistic)
-        };
-        let best = self.alternatives.iter().enumerate().max_by(by_statistic);
-        let Some((index, _)) = best.filter(|(_, best)| best.statistic >= self.params.threshold()) else {
+        let won =
+            self.alternatives.iter().enumerate().filter(|(_, one)| one.statistic >= self.threshold(one.kind));
+        let Some((index, _)) = won.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else {
             return false;
         };
         let best = self.alternatives.remove(index);
@@ -172,20 +199,28 @@ impl<H> RelocalizationTest<H> {
         let previous = AlternativeHypothesis {
             hypothesis: std::mem::replace(present, best.hypothesis),
             statistic: 1.0 / (prior * prior * best.statistic),
-            kind: Kind::Previous { distance: 0.0 },
+            kind: if best.kind == Kind::Start { Kind::Start } else { Kind::Previous { distance: 0.0 } },
         };
         self.alternatives.push(previous);
         true
+    }
+
+    /// The statistic at which an alternative replaces the present hypothesis.
+    fn threshold(&self, kind: Kind) -> f64 {
+        if kind == Kind::Start { 1.0 / self.params.prior() } else { self.params.threshold() }
     }
 
     fn search_distance(&self) -> f64 {
         self.distance.max(MIN_DISTANCE)
     }
 
+    /// Removes each alternative whose odds have fallen, from where it started, by the factor at which an even alternative would be decided.
     fn remove_hopeless(&mut self) {
-        let distance = self.search_distance();
+        let (prior, distance) = (self.params.prior(), self.search_distance());
+        let factor = 1.0 / (prior * self.params.threshold());
         self.alternatives.retain(|alternative| match alternative.kind {
-            Kind::Proposed { prior } => alternative.statistic >= prior * distance,
+            Kind::Start => alternative.statistic >= factor / prior,
+            Kind::Proposed { prior } => alternative.statistic >= factor * prior * distance,
             Kind::Previous { .. } => true,
         });
     }

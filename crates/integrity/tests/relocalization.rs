@@ -91,12 +91,9 @@ fn previous_hypothesis_returns_within_its_distance() {
         let mut present = "here";
         let mut relocalization = RelocalizationTest::new(params).unwrap();
         relocalization
-            .propose([RelocalizationCandidate {
-                hypothesis: "there",
-                prior: 0.5,
-                log_likelihood_ratio: 20.0,
-            }])
+            .propose([RelocalizationCandidate { hypothesis: "there", prior: 0.5, log_likelihood_ratio: 0.0 }])
             .unwrap();
+        relocalization.observe(0.0, |_| 20.0).unwrap();
         assert!(relocalization.decide(&mut present));
         assert!(relocalization.alternatives()[0].is_previous());
         relocalization.drive(distance).unwrap();
@@ -111,8 +108,9 @@ fn odds_are_inverted_when_hypotheses_change_places() {
     let mut present = 0;
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
     relocalization
-        .propose([RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 15.0 }])
+        .propose([RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 0.0 }])
         .unwrap();
+    relocalization.observe(0.0, |_| 15.0).unwrap();
     let moved = relocalization.probability();
     assert!(relocalization.decide(&mut present));
     assert!((relocalization.probability() - (1.0 - moved)).abs() < 1e-12);
@@ -122,12 +120,37 @@ fn odds_are_inverted_when_hypotheses_change_places() {
 fn equal_alternatives_do_not_take_turns() {
     let mut present = 0;
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
-    let proposal =
-        |hypothesis| RelocalizationCandidate { hypothesis, prior: 0.5, log_likelihood_ratio: 20.0 };
+    let proposal = |hypothesis| RelocalizationCandidate { hypothesis, prior: 0.5, log_likelihood_ratio: 0.0 };
     relocalization.propose([proposal(1), proposal(2)]).unwrap();
+    relocalization.observe(0.0, |_| 20.0).unwrap();
     assert!(relocalization.decide(&mut present));
     assert!(!relocalization.decide(&mut present));
     assert!(relocalization.probability() > 0.49, "two places are equally probable");
+}
+
+#[test]
+fn search_alone_makes_the_odds_even_at_most() {
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    let found = RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 1000.0 };
+    relocalization.propose([found]).unwrap();
+    assert!((relocalization.probability() - 0.5).abs() < 1e-12);
+    assert!(!relocalization.decide(&mut 0));
+}
+
+#[test]
+fn unknown_start_is_decided_at_even_odds() {
+    let mut present = 0;
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    // The last one is less probable by more than the odds of a decision, 1 to 100.
+    relocalization.start([(1, -1.0), (2, -2.0), (3, -5.0)]).unwrap();
+    assert_eq!(relocalization.alternatives().len(), 2);
+    let odds = (-1_f64).exp() + (-2_f64).exp();
+    assert!((relocalization.probability() - odds / (1.0 + odds)).abs() < 1e-12);
+    assert!(!relocalization.decide(&mut present));
+    relocalization.observe(0.0, |hypothesis| if *hypothesis == 1 { 1.5 } else { 0.0 }).unwrap();
+    assert!(relocalization.decide(&mut present) && present == 1);
+    assert!(!relocalization.decide(&mut present), "the previous one is an alternative again");
+    assert_eq!(relocalization.alternatives().len(), 2);
 }
 
 #[test]

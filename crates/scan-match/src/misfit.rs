@@ -31,7 +31,8 @@ impl Misfit {
     ) -> Self {
         let pose = guess.retract(correction);
         let by_guess = guess.rotation_matrix();
-        let share = (cloud.spacing / params.correlation_angle_rad).min(1.0) / params.point_sigma_m.powi(2);
+        let share = (cloud.spacing / params.point_error_correlation_angle_rad).min(1.0)
+            / params.point_sigma_m.powi(2);
         let mut misfit = Self::default();
         let mut noise_of_normals = Matrix3::zeros();
         for point in &cloud.points {

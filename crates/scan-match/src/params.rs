@@ -19,7 +19,7 @@ pub struct ScanMatchParams {
     pub point_sigma_m: f64,
     /// Angle over which the errors of neighbouring points are fully correlated, rad, as on a bulging wall, a coat or an edge. A denser scan then
     /// adds no information. Default: 0.4.
-    pub correlation_angle_rad: f64,
+    pub point_error_correlation_angle_rad: f64,
     /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
     pub kernel_m: f64,
     /// The initial kernel width, m: the expected error of the guess. Default: 0.5.
@@ -34,7 +34,7 @@ impl Default for ScanMatchParams {
     fn default() -> Self {
         Self {
             point_sigma_m: 0.03,
-            correlation_angle_rad: 0.4,
+            point_error_correlation_angle_rad: 0.4,
             kernel_m: 0.1,
             initial_kernel_m: 0.5,
             initial_heading_spacing_rad: 0.2,
@@ -51,7 +51,7 @@ impl ScanMatchParams {
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
             ("point_sigma_m", self.point_sigma_m),
-            ("correlation_angle_rad", self.correlation_angle_rad),
+            ("point_error_correlation_angle_rad", self.point_error_correlation_angle_rad),
             ("kernel_m", self.kernel_m),
             ("initial_kernel_m", self.initial_kernel_m),
             ("initial_heading_spacing_rad", self.initial_heading_spacing_rad),

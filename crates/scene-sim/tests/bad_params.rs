@@ -8,7 +8,7 @@ use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
 use wayfix_scene_sim::monobot::MonobotParams;
 use wayfix_scene_sim::random::{NoiseShape, RandomStreamPurpose};
 use wayfix_scene_sim::route::{
-    CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, RoutePiece, WaypointRoute,
+    CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route, RoutePiece,
 };
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::{
@@ -152,7 +152,7 @@ fn routes() {
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         let rectangle = RoundedRectangleRoute { length_m: 9.0, width_m: 9.0, corner_radius_m: 1.0 };
         let rows = LawnMowerRoute { n_rows: 2, row_length_m: 1.0, spacing_m: 1.0 };
-        let points = WaypointRoute { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
+        let points = RandomWaypointRoute { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
         for route in [
             CircleRoute { radius_m: bad }.route(),
             RoundedRectangleRoute { length_m: bad, ..rectangle }.route(),
@@ -160,8 +160,8 @@ fn routes() {
             RoundedRectangleRoute { corner_radius_m: bad, ..rectangle }.route(),
             LawnMowerRoute { row_length_m: bad, ..rows }.route(),
             LawnMowerRoute { spacing_m: bad, ..rows }.route(),
-            WaypointRoute { half_width_m: bad, ..points }.route(rng),
-            WaypointRoute { turn_radius_m: bad, ..points }.route(rng),
+            RandomWaypointRoute { half_width_m: bad, ..points }.route(rng),
+            RandomWaypointRoute { turn_radius_m: bad, ..points }.route(rng),
         ] {
             assert_refused(route.map(drop), bad);
         }
@@ -171,7 +171,7 @@ fn routes() {
     let straight = RoutePiece { length_m: 1.0, curvature_per_m: 0.0 };
     assert_refused(Route::closed(start, vec![straight]).map(drop), 1.0);
     assert!(Route::open(Pose2::new(f64::NAN, 0.0, 0.0), vec![straight]).is_err());
-    let cramped = WaypointRoute { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
+    let cramped = RandomWaypointRoute { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
     let no_room = SimulationError::NoRoom { what: "waypoints", placed: 0, wanted: 2 };
     assert_eq!(cramped.route(rng), Err(no_room));
     assert!(matches!(

@@ -5,7 +5,9 @@ mod support;
 use support::{assert_near, deviation, mean, run, streams, world};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
 use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
-use wayfix_scene_sim::route::{CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, WaypointRoute};
+use wayfix_scene_sim::route::{
+    CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route,
+};
 use wayfix_scene_sim::sensor::{
     GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams,
     SimulatedSensor, WheelOdometry, WheelOdometryParams,
@@ -93,7 +95,7 @@ fn the_robot_keeps_to_its_route() {
         CircleRoute { radius_m: 4.0 }.route(),
         RoundedRectangleRoute { length_m: 10.0, width_m: 6.0, corner_radius_m: 1.0 }.route(),
         LawnMowerRoute { n_rows: 4, row_length_m: 6.0, spacing_m: 2.0 }.route(),
-        WaypointRoute { n_waypoints: 15, half_width_m: 5.0, turn_radius_m: 1.0 }.route(rng),
+        RandomWaypointRoute { n_waypoints: 15, half_width_m: 5.0, turn_radius_m: 1.0 }.route(rng),
     ] {
         let route = route.expect("valid parameters");
         let fine: Vec<Pose2<f64>> =

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_3;
 use nalgebra::Vector2;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp, TrueLandmark, Velocity};
-use wayfix_systems::points::{PointRun, PointSlamParams, RobotCalibrationParams, RobotProfile, run};
+use wayfix_systems::points::{PointRun, PointSlamParams, RobotProfile, RobotTimingParams, run};
 
 fn at(seconds: f64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time"), data }
@@ -22,14 +22,14 @@ fn detection(seconds: f64, id: u32, range: f64, bearing: f64) -> Record {
     )
 }
 
-fn slam(records: &[Record], robot: RobotCalibrationParams) -> PointRun {
+fn slam(records: &[Record], robot: RobotTimingParams) -> PointRun {
     let params = PointSlamParams { robot, ..PointSlamParams::of(RobotProfile::Generic) };
     run(records, &params, |_| {}).expect("a usable log")
 }
 
 #[test]
 fn delayed_detection_corrects_the_past_pose() {
-    let robot = RobotCalibrationParams { sensor_latency: 0.25, ..RobotCalibrationParams::default() };
+    let robot = RobotTimingParams { sensor_latency: 0.25, ..RobotTimingParams::default() };
     let slam = slam(&[velocity(0.0, 1.0, 0.0), detection(1.0, 7, 2.0, 0.0)], robot);
     let stamped_estimate = slam.system.stamped_estimates()[0];
     assert!((slam.system.filter().robot().pose.x() - 0.75).abs() < 1e-12, "at the exposure");
@@ -40,7 +40,7 @@ fn delayed_detection_corrects_the_past_pose() {
 
 #[test]
 fn a_delayed_command_moves_the_robot_later() {
-    let robot = RobotCalibrationParams { command_delay: 0.5, ..RobotCalibrationParams::default() };
+    let robot = RobotTimingParams { command_delay: 0.5, ..RobotTimingParams::default() };
     let records = [velocity(0.0, 1.0, 0.0), velocity(1.0, 1.0, 0.0), detection(2.0, 7, 2.0, 0.0)];
     let slam = slam(&records, robot);
     assert!((slam.system.stamped_estimates()[0].pose.x() - 1.5).abs() < 1e-12);
@@ -48,7 +48,7 @@ fn a_delayed_command_moves_the_robot_later() {
 
 #[test]
 fn depth_becomes_distance() {
-    let robot = RobotCalibrationParams { range_is_depth: true, ..RobotCalibrationParams::default() };
+    let robot = RobotTimingParams { range_is_depth: true, ..RobotTimingParams::default() };
     let looks =
         [velocity(0.0, 0.0, 0.0), detection(0.1, 7, 1.0, FRAC_PI_3), detection(0.2, 7, 1.0, FRAC_PI_3)];
     let slam = slam(&looks, robot);
@@ -71,11 +71,11 @@ fn a_refused_record_leaves_no_trace() {
         velocity(1.2, 1e300, 0.0),
         velocity(0.2, 0.5, 0.0), // back in time
     ];
-    let clean = slam(&good, RobotCalibrationParams::default());
+    let clean = slam(&good, RobotTimingParams::default());
     for record in bad {
         let mut records = good.to_vec();
         records.insert(3, record.clone());
-        let mut slam = slam(&records, RobotCalibrationParams::default());
+        let mut slam = slam(&records, RobotTimingParams::default());
         assert_eq!(slam.events().get("record_refused"), 1, "{record:?}");
         assert_eq!(slam.events().refusals()[0].index, 3);
         assert_eq!(slam.system.filter().robot(), clean.system.filter().robot(), "{record:?}");
@@ -98,8 +98,8 @@ fn non_finite_measurement_is_counted_and_changes_nothing() {
         detection(8, -1.0, 0.0),
         detection(8, 1.0, f64::NEG_INFINITY),
     ];
-    let clean = slam(&[velocity(0.0, 0.5, 0.1), look(&[])], RobotCalibrationParams::default());
-    let mut slam = slam(&[velocity(0.0, 0.5, 0.1), look(&bad)], RobotCalibrationParams::default());
+    let clean = slam(&[velocity(0.0, 0.5, 0.1), look(&[])], RobotTimingParams::default());
+    let mut slam = slam(&[velocity(0.0, 0.5, 0.1), look(&bad)], RobotTimingParams::default());
     assert_eq!(slam.events().get("observation_unusable"), bad.len() as u64);
     assert_eq!(slam.system.filter().robot(), clean.system.filter().robot());
     assert_eq!(slam.system.filter().covariance(), clean.system.filter().covariance());
@@ -111,7 +111,7 @@ fn the_run_starts_at_the_truth_where_odometry_starts() {
     let records = [truth(0.0, 5.0), truth(0.2, 6.0), velocity(0.1, 0.0, 0.0), detection(0.2, 7, 1.0, 0.0)];
     let mut records = records.to_vec();
     records.sort_by_key(|record| record.stamp);
-    let slam = slam(&records, RobotCalibrationParams::default());
+    let slam = slam(&records, RobotTimingParams::default());
     assert!((slam.system.stamped_estimates()[0].dead_reckoning.x() - 5.5).abs() < 1e-12);
 }
 

@@ -14,7 +14,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("scan-match", &["estimation-traits"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
-    ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
+    ("color-model", &["estimation-traits", "gaussian-core", "integrity", "kalman", "particle", "color-map"]),
     ("condensation", &["estimation-traits", "gaussian-core", "integrity", "particle"]),
     ("visual-tracking", &["gaussian-core", "particle"]),
     ("appearance-cml", &["estimation-traits", "gaussian-core", "integrity", "kalman"]),

@@ -52,7 +52,7 @@ where
         pose: Option<Gaussian<Pose2<f64>>>,
         events: &mut Vec<Event>,
     ) -> Result<(), AppearanceMapError> {
-        let is_outlier = self.params.reject_outliers && self.is_outlier();
+        let is_outlier = self.params.skip_outlier_views_in_mapping && self.is_outlier();
         let Some(view) = self.history.pop() else { return Ok(()) };
         self.learned_last = Some(view.clone());
         let Some(pose) = pose.filter(|_| !is_outlier) else { return Ok(()) };

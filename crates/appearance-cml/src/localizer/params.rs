@@ -87,7 +87,7 @@ pub struct LocalizerParams {
     /// How the map learns.
     pub map: AppearanceMapParams,
     /// Whether views that differ from both neighbours along the path are not learned: a person passes by. Default true.
-    pub reject_outliers: bool,
+    pub skip_outlier_views_in_mapping: bool,
 }
 
 impl Default for LocalizerParams {
@@ -102,7 +102,7 @@ impl Default for LocalizerParams {
             relocalization: RelocalizationParams::default(),
             learning: Learning::default(),
             map: AppearanceMapParams::default(),
-            reject_outliers: true,
+            skip_outlier_views_in_mapping: true,
         }
     }
 }
@@ -116,7 +116,7 @@ impl LocalizerParams {
             fusion: FusionParams::as_published(),
             recovery: Recovery::Off,
             map: AppearanceMapParams::as_published(),
-            reject_outliers: false,
+            skip_outlier_views_in_mapping: false,
             ..Self::default()
         }
     }

@@ -67,6 +67,11 @@ impl PixelClassifier {
         most_probable(&self.densities, pixel, self.floor(pixel))
     }
 
+    /// The colour of a pixel as a number; 255 where the background, of this log-density, does better.
+    pub(crate) fn classify_above(&self, pixel: [u8; 3], background: f64) -> u8 {
+        most_probable(&self.densities, pixel, background).map_or(NO_COLOR, |color| color.0)
+    }
+
     /// The colour of every pixel: [`ColorId`] as a number, 255 for background.
     pub fn classify_image(&self, image: &YuvImage) -> Vec<u8> {
         let label = |pixel: &[u8; 3]| self.classify(*pixel).map_or(NO_COLOR, |color| color.0);
@@ -104,7 +109,7 @@ impl PixelClassifier {
 }
 
 /// The colour with the highest log-density for a pixel, the first of equal ones; `None` if none exceeds `floor`.
-pub(crate) fn most_probable(densities: &[PixelSumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
+fn most_probable(densities: &[PixelSumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
     let better = |best: (Option<ColorId>, f64), (at, density): (u8, &PixelSumDensity)| {
         let log = density.log(pixel);
         if log > best.1 { (Some(ColorId(at)), log) } else { best }

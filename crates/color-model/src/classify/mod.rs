@@ -7,7 +7,6 @@ mod table;
 pub(crate) use blobs::blobs_of_spans;
 pub use blobs::{ColorBlob, find_blobs};
 pub use classifier::PixelClassifier;
-pub(crate) use classifier::most_probable;
 pub use table::ColorLookUpTable;
 
 /// Label of a pixel that shows no colour of the map.

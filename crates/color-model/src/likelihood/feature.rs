@@ -47,6 +47,7 @@ use crate::{
 /// assert!(view.log_likelihood(&looking(0.0), &[]) > view.log_likelihood(&looking(0.3), &[]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct FeatureLikelihood {
     seen: Vec<Feature>,
     projector: MapRenderer,
@@ -141,6 +142,7 @@ fn best_pairs(pairs: &[(f64, usize, usize)], n_seen: usize, n_expected: usize) -
 }
 
 /// A blob as the camera's directions have it.
+#[derive(Clone)]
 struct Feature {
     color: ColorId,
     /// Azimuth to the left and elevation, radians.

@@ -4,10 +4,11 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
-/// Where most of the weight is: mean and covariance of the dominant cluster of particles.
+/// Mean and covariance of the dominant cluster of particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseEstimate {
-    /// The cluster's pose, its covariance in the body frame of the mean (metres, radians).
+    /// The cluster's pose, with its covariance in the body frame of the mean (m, rad). The spread of the particles has a lower bound: their
+    /// resolution, the radius of a place over their effective number.
     pub pose: Gaussian<Pose2<f64>>,
     /// The cluster's share of the whole weight, in (0, 1].
     pub share: f64,
@@ -25,21 +26,22 @@ impl PoseEstimate {
     }
 }
 
-/// How far around its centre a cluster reaches: metres and radians.
-const REACH: Vector3<f64> = Vector3::new(0.4, 0.4, 0.5);
-/// Steps of the mean towards the middle of its cluster.
-const N_STEPS: usize = 5;
-/// Variances a particle stands for, so that a single one is no certainty: 2 mm and 0.2°.
-const GRAIN: Vector3<f64> = Vector3::new(4e-6, 4e-6, 1.2e-5);
+/// Radius of a place, in m and in rad: poses within it belong to one hypothesis. The camera of a four-legged robot (50°) shows less than a
+/// landmark's width more or less within this distance, so that the likelihood has one peak there.
+pub(crate) const PLACE_RADIUS: f64 = 0.3;
 
-/// The dominant cluster of weighted poses: starts in the heaviest cell of a grid and shifts to the mean of what is within reach.
+/// Whether two poses are in one place.
+pub(crate) fn is_same_place(a: &Pose2<f64>, b: &Pose2<f64>) -> bool {
+    a.local(b).norm() < PLACE_RADIUS
+}
+
+/// The dominant cluster of weighted poses: mean shift from the heaviest cell of a grid. [Comaniciu & Meer 2002]
 ///
 /// `None` when there are no poses or no weight.
 pub(crate) fn dominant_cluster(particles: &[(Pose2<f64>, f64)]) -> Option<PoseEstimate> {
     let mut cells = BTreeMap::<[i64; 3], (f64, usize)>::new();
     for (at, (pose, weight)) in particles.iter().enumerate() {
-        let cell =
-            [pose.x() / REACH.x, pose.y() / REACH.y, pose.heading() / REACH.z].map(|v| v.floor() as i64);
+        let cell = [pose.x(), pose.y(), pose.heading()].map(|v| (v / PLACE_RADIUS).floor() as i64);
         let (total, heaviest) = cells.entry(cell).or_insert((0.0, at));
         *total += weight;
         if *weight > particles[*heaviest].1 {
@@ -49,15 +51,23 @@ pub(crate) fn dominant_cluster(particles: &[(Pose2<f64>, f64)]) -> Option<PoseEs
     let (_, (_, start)) = cells.iter().max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
     let mut mean = particles[*start].0;
     let mut moments = Moments::about(&mean, particles);
-    for _ in 0..N_STEPS {
-        mean = mean.retract(&moments.mean);
-        moments = Moments::about(&mean, particles);
+    // Each step gains weight; the set of particles within the radius is finite, so the shift ends.
+    loop {
+        let shifted = mean.retract(&moments.mean);
+        let next = Moments::about(&shifted, particles);
+        let is_better = next.weight > moments.weight;
+        (mean, moments) = (shifted, next);
+        if !is_better {
+            break;
+        }
     }
     let total: f64 = particles.iter().map(|(_, weight)| weight).sum();
     if moments.weight.is_nan() || moments.weight <= 0.0 {
         return None;
     }
-    let pose = Gaussian::new(mean, moments.spread + Matrix3::from_diagonal(&GRAIN)).ok()?;
+    let n_effective = 1.0 / particles.iter().map(|(_, weight)| (weight / total).powi(2)).sum::<f64>();
+    let resolution = (PLACE_RADIUS / n_effective.max(1.0)).powi(2);
+    let pose = Gaussian::new(mean, moments.spread + Matrix3::identity() * resolution).ok()?;
     Some(PoseEstimate { pose, share: moments.weight / total })
 }
 
@@ -73,7 +83,7 @@ impl Moments {
         let (mut weight, mut sum, mut products) = (0.0, Vector3::zeros(), Matrix3::zeros());
         for (pose, w) in particles {
             let from_centre = centre.local(pose);
-            if from_centre.component_div(&REACH).norm_squared() <= 1.0 {
+            if from_centre.norm() <= PLACE_RADIUS {
                 weight += w;
                 sum += from_centre * *w;
                 products += from_centre * from_centre.transpose() * *w;
@@ -90,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_heavier_of_two_clusters_is_the_estimate() {
+    fn heavier_of_two_clusters_is_the_estimate() {
         let around = |x: f64, heading: f64, weight: f64| {
             [(-0.05, -0.02), (0.05, 0.02), (0.0, 0.0)]
                 .map(|(dx, turn)| (Pose2::new(x + dx, 0.0, heading + turn), weight / 3.0))
@@ -99,11 +109,13 @@ mod tests {
         let particles = [around(1.0, pi, 0.7), around(-1.0, 0.0, 0.3)].concat();
         let estimate = dominant_cluster(&particles).unwrap();
         assert!((estimate.share - 0.7).abs() < 1e-12);
-        // The heading's wrap is inside the cluster.
+        // The cluster contains the wrap of the heading.
         let off = Pose2::new(1.0, 0.0, pi).local(estimate.pose.mean());
         assert!(off.norm() < 1e-9, "{off}");
         let along = 2.0 / 3.0 * 0.05_f64.powi(2); // two of three are 5 cm off the mean
-        assert!((estimate.pose.covariance()[(0, 0)] - along - GRAIN.x).abs() < 1e-12);
+        let n_effective = 1.0 / (3.0 * (0.7_f64 / 3.0).powi(2) + 3.0 * 0.1_f64.powi(2));
+        let resolution = (PLACE_RADIUS / n_effective).powi(2);
+        assert!((estimate.pose.covariance()[(0, 0)] - along - resolution).abs() < 1e-12);
     }
 
     #[test]

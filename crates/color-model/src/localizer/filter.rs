@@ -1,245 +1,303 @@
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
-use rand::Rng;
-use wayfix_color_map::{ColorMap, PinholeCamera};
-use wayfix_estimation_traits::{Pose2, Pose3, SampleMotion};
-use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle};
+use rand::{Rng, RngExt};
+use wayfix_estimation_traits::Pose2;
+use wayfix_particle::{
+    KldParams, KldSampling, NormalizedWeights, ParticleChunkRng, ParticleSet, RaoBlackwellParticle,
+    Resampler, SystematicResampler, grid_cell, map_conditionals,
+};
 
 use super::{
-    Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
-    hypothesis::{Hypothesis, Judged, lead, share_of_first, shortlist},
-    light::Light,
-    particle::CameraLocation,
-    routine::Routine,
-    shots::{Shot, Shots, Walked},
-    start::Area,
-    vigilance::Vigilance,
+    LocalizerParams, PoseEstimate,
+    camera::CameraLocation,
+    estimate::{PLACE_RADIUS, dominant_cluster},
+    frame::PreparedFrame,
 };
-use crate::{AcquisitionParams, BackgroundColorModel, ColorModelError, LightingBank, YuvImage};
+use crate::{
+    ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums, likelihood::or_hidden,
+};
 
-/// Probability of the best place from which on it is called tracked.
-const SURE: f64 = 0.95;
-
-/// Finds out where a robot stands on a colour-coded field and what the colours look like in today's light, at once.
-///
-/// The Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV]: a particle is a camera location and, conditioned on it, a switching
-/// Kalman filter of the light.
-pub struct ColorLocalizer {
-    pub(super) map: Arc<ColorMap>,
-    pub(super) camera: PinholeCamera,
-    pub(super) area: Area,
-    pub(super) background: Option<BackgroundColorModel>,
-    pub(super) params: LocalizerParams,
-    /// Where the robot may be, the most probable first; never empty.
-    pub(super) hypotheses: Vec<Hypothesis>,
-    /// The light as it is known beforehand.
-    pub(super) prior: Arc<Light>,
-    /// The light as it was known before there was doubt about the place.
-    pub(super) trusted: Arc<Light>,
-    pub(super) start: Start,
-    /// Odometry since the last frame.
-    pub(super) walked: Walked,
-    pub(super) shots: Shots,
-    pub(super) vigilance: Vigilance,
-    pub(super) n_updates: usize,
-    pub(super) routine: Routine,
+/// A camera location with its light, $`p(θ | x, z)`$, and what the last frame shows from there. [Schulz & Fox 2004, Eq. 12]
+#[derive(Clone)]
+pub(crate) struct ColorParticle<T> {
+    pub(crate) state: RaoBlackwellParticle<CameraLocation, T>,
+    /// Of every colour.
+    sums: Vec<PixelSums>,
+    /// The light drawn.
+    light: usize,
+    /// Of the frame, whichever light was drawn, in nats.
+    log_likelihood: f64,
 }
 
-impl ColorLocalizer {
-    /// A localizer that starts where `start` says, in light of which `light` says what is known.
-    ///
-    /// # Errors
-    /// When a parameter is out of range or too large for the camera's images, the map is empty, or its colours and the light's differ in number.
-    pub fn new<R: Rng + ?Sized>(
-        map: Arc<ColorMap>,
-        camera: PinholeCamera,
-        light: LightingBank,
-        start: &Start,
-        params: LocalizerParams,
-        rng: &mut R,
+/// The particle filter of one place: a camera location is sampled, the light is a Kalman filter conditioned on it. [Schulz & Fox 2004, IV]
+#[derive(Clone)]
+pub(crate) struct ColorFilter<T> {
+    particles: Vec<ColorParticle<T>>,
+    weights: NormalizedWeights,
+    /// Probability that the view is hidden.
+    hidden: f64,
+    max_particles: usize,
+    /// Result of the last frame.
+    pub(crate) weighing: Weighing,
+}
+
+/// Result of weighing particles by a frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Weighing {
+    /// Log-likelihood of the frame, $`\ln \sum_i w_i p(z | x_i)`$, relative to the background, nats.
+    pub(crate) log_evidence: f64,
+    /// Mean over the weighted particles, nats.
+    pub(crate) mean_log_likelihood: f64,
+    /// Exponent of the likelihoods, at most 1.
+    pub(crate) tempering: f64,
+    pub(crate) effective_particles: f64,
+    /// Probability of each light.
+    pub(crate) light_probabilities: Vec<f64>,
+}
+
+impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
+    /// Particles at these locations with equal weights, which share one light.
+    pub(crate) fn new(
+        locations: impl IntoIterator<Item = CameraLocation>,
+        light: &Arc<T>,
     ) -> Result<Self, ColorModelError> {
-        params.check()?;
-        params.acquisition.camera(&camera)?;
-        let (expected, got) = (map.colors().len(), light.n_colors());
-        if expected != got {
-            return Err(ColorModelError::Dimension { what: "colours of the lighting bank", expected, got });
+        let particle = |location| ColorParticle {
+            state: RaoBlackwellParticle::from_shared(location, Arc::clone(light)),
+            sums: Vec::new(),
+            light: 0,
+            log_likelihood: 0.0,
+        };
+        let particles: Vec<_> = locations.into_iter().map(particle).collect();
+        let weights = NormalizedWeights::from_linear(vec![1.0; particles.len()])?;
+        let weighing = Weighing {
+            log_evidence: 0.0,
+            mean_log_likelihood: 0.0,
+            tempering: 1.0,
+            effective_particles: particles.len() as f64,
+            light_probabilities: (0..light.n_lights()).map(|at| light.light_probability(at)).collect(),
+        };
+        Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
+    }
+
+    /// Moves each particle.
+    pub(crate) fn predict(&mut self, mut moved: impl FnMut(&Pose2<f64>) -> Pose2<f64>) {
+        for particle in &mut self.particles {
+            particle.state.sampled.body = moved(&particle.state.sampled.body);
         }
-        let area = Area::of(&map)?;
-        let prior = Arc::new(Light::new(light, &params.pixels)?);
-        let particles = (0..params.max_particles)
-            .map(|_| {
-                let location =
-                    CameraLocation { body: start.draw(&area, rng), error: params.camera.sample(rng) };
-                RaoBlackwellParticle::from_shared(location, Arc::clone(&prior))
-            })
-            .collect();
-        Ok(Self {
-            map,
-            camera,
-            area,
-            background: None,
-            params,
-            hypotheses: vec![Hypothesis {
-                particles,
-                weights: NormalizedWeights::from_linear(vec![1.0; params.max_particles])?,
-                log_evidence: 0.0,
-                hidden: 0.0,
-            }],
-            trusted: Arc::clone(&prior),
-            prior,
-            start: start.clone(),
-            walked: Walked::default(),
-            shots: Shots::default(),
-            vigilance: Vigilance::default(),
-            n_updates: 0,
-            routine: Routine::default(),
-        })
     }
 
-    /// The same with a background learned from images; without, it is made of a uniform one and of the colours of each frame.
-    pub fn with_background(self, background: BackgroundColorModel) -> Self {
-        Self { background: Some(background), ..self }
+    /// Lets the light drift. [Schulz & Fox 2004, Eq. 6]
+    pub(crate) fn predict_lighting(&mut self, seconds: f64) -> Result<(), ColorModelError> {
+        let mut states: Vec<_> = self.particles.iter().map(|particle| particle.state.clone()).collect();
+        map_conditionals(&mut states, |light| {
+            let mut light = light.clone();
+            light.predict(seconds)?;
+            Ok::<_, ColorModelError>(light)
+        })?;
+        self.particles.iter_mut().zip(states).for_each(|(particle, state)| particle.state = state);
+        Ok(())
     }
 
-    /// The weighted body poses of the particles about the most probable place.
-    pub fn poses(&self) -> impl Iterator<Item = (Pose2<f64>, f64)> {
-        self.hypotheses.iter().take(1).flat_map(|hypothesis| {
-            let bodies = hypothesis.particles.iter().map(|particle| particle.sampled.body);
-            bodies.zip(hypothesis.weights.as_slice().iter().copied())
-        })
-    }
-
-    /// What the colours look like to the heaviest particle.
-    pub fn light(&self) -> &LightingBank {
-        self.hypotheses.first().and_then(Hypothesis::light).map_or(&self.prior.bank, |light| &light.bank)
-    }
-
-    /// Moves every particle by the odometry and by noise of its own. Call as often as there is odometry; the time adds up to the next frame.
+    /// Draws a camera error and a light for each particle and weighs them by the frame. [Schulz & Fox 2004, Eqs. 14–16]
     ///
-    /// # Errors
-    /// When the increment is not finite, or the time negative or not finite. Nothing has changed then.
-    pub fn predict<R: Rng + ?Sized>(
+    /// The light is drawn from the optimal proposal $`p(j | z) ∝ π_j\, p(z | x, θ_j)`$ by enumeration; the weight is the sum, whichever was drawn.
+    /// [Andrieu et al. 2002]
+    pub(crate) fn weigh<L: LikelihoodModel, R: Rng + ?Sized>(
         &mut self,
-        step: &OdometryStep,
+        frame: &PreparedFrame<'_, L>,
+        seconds: f64,
+        params: &LocalizerParams,
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
-        if !step.increment.is_none_or(|increment| increment.is_finite()) {
-            return Err(ColorModelError::NotFinite { what: "odometry increment" });
+        let mut set = ParticleSet::new(std::mem::take(&mut self.particles))?;
+        let weigh = |(scratch, values): &mut (_, Vec<f64>),
+                     particle: &mut ColorParticle<T>,
+                     rng: &mut ParticleChunkRng| {
+            let location = &mut particle.state.sampled;
+            location.error = params.camera.after(&location.error, seconds, rng);
+            let light = particle.state.conditional();
+            values.resize(light.n_lights(), 0.0);
+            particle.sums.resize(frame.n_colors(), PixelSums::default());
+            frame.view(scratch, &particle.state.sampled, light, &mut particle.sums, values);
+            (particle.light, particle.log_likelihood) = draw_light(light, values, rng.random());
+        };
+        set.propagate_with(|| (frame.scratch(), Vec::new()), weigh, rng);
+        self.particles = set.states().to_vec();
+
+        let hidden = params.occlusion.predict(self.hidden, seconds);
+        let evidence = |particle: &ColorParticle<T>| or_hidden(particle.log_likelihood, hidden);
+        let evidences: Vec<f64> = self.particles.iter().map(evidence).collect();
+        let least = params.tempering_min_ess_share * self.weights.effective_sample_size();
+        let (weights, tempering) = tempered(&evidences, &self.weights, least)?;
+        let joint = evidences.iter().zip(self.weights.as_slice()).map(|(l, w)| l + w.ln());
+        let n_lights = self.particles.first().map_or(0, |particle| particle.state.conditional().n_lights());
+        let mut light_probabilities = vec![0.0; n_lights];
+        let mut mean_log_likelihood = 0.0;
+        for (particle, weight) in
+            self.particles.iter().zip(weights.as_slice()).filter(|(_, weight)| **weight > 0.0)
+        {
+            light_probabilities[particle.light] += weight;
+            // The worst that a frame can count.
+            let least = params.pixels.outlier_share.ln() * params.pixels.independent_pixels;
+            mean_log_likelihood += weight * particle.log_likelihood.max(least);
         }
-        if !(step.seconds >= 0.0 && step.seconds.is_finite()) {
-            return Err(ColorModelError::OutOfRange { what: "seconds of a step", value: step.seconds });
-        }
-        let moved = self.params.odometry.sampler(step);
-        for particle in self.hypotheses.iter_mut().flat_map(|hypothesis| &mut hypothesis.particles) {
-            particle.sampled.body = moved(&particle.sampled.body, rng);
-            self.area.clamp(&mut particle.sampled.body);
-        }
-        self.walked.add(step, &self.params.odometry);
+        let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
+        self.hidden = (hidden.ln() - log_evidence).exp().min(1.0); // Bayes
+        self.weighing = Weighing {
+            log_evidence,
+            mean_log_likelihood,
+            tempering,
+            effective_particles: weights.effective_sample_size(),
+            light_probabilities,
+        };
+        self.weights = weights;
         Ok(())
     }
 
-    /// Learns from a frame taken while the joints reported the camera at `mount` in the robot's frame.
-    ///
-    /// # Errors
-    /// When the image is not of the camera's size or the mount is not finite. Nothing has changed then.
-    pub fn update<R: Rng + ?Sized>(
+    /// Draws the ancestors of the next generation, as many as their spread needs. [Fox 2003]
+    pub(crate) fn resample<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<usize>, ColorModelError> {
+        let n = n_particles(&self.particles, &self.weights, self.max_particles, rng)?;
+        Ok(SystematicResampler.ancestors(&self.weights, n, rng)?)
+    }
+
+    /// The next generation: the light of each ancestor is updated with the colour means that it shows, once for all its children.
+    /// [Schulz & Fox 2004, Eqs. 3–5]
+    pub(crate) fn update_lighting(
         &mut self,
-        image: &YuvImage,
-        mount: &Pose3<f64>,
-        rng: &mut R,
-    ) -> Result<FrameOutcome, ColorModelError> {
-        self.check(image, mount)?;
-        let mut shots = self.shots.clone();
-        let shot = Shot { image: image.clone(), mount: *mount, walked: self.walked };
-        shots.push(shot, self.params.acquisition.n_frames);
-        let n_frames = self.params.acquisition.n_frames;
-        let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
-        let is_search = self.vigilance.is_search_due(&self.params) || self.is_routine();
-        let judged = if is_start {
-            self.acquire(image, mount, &shots, rng)?
-        } else if is_search {
-            self.reconsider(image, mount, &shots, rng)?
-        } else {
-            self.look(self.hypotheses.clone(), image, mount, rng)?
+        ancestors: &[usize],
+        params: &LocalizerParams,
+    ) -> Result<(), ColorModelError> {
+        let survivors: Vec<usize> = ancestors.iter().copied().collect::<BTreeSet<_>>().into_iter().collect();
+        let mut updated: Vec<_> = survivors.iter().map(|at| self.particles[*at].clone()).collect();
+        for_each(&mut updated, |particle| particle.update_lighting(params));
+        let child = |ancestor: &usize| {
+            let at = survivors.binary_search(ancestor).unwrap_or(0); // every ancestor survives
+            updated[at].clone()
         };
-        let routine = self.routine.next(is_start || is_search);
-        let acquisition = &self.params.acquisition;
-        let most = acquisition.n_kept.saturating_sub(routine.n_since()).max(acquisition.n_undecided);
-        let judged = shortlist(judged, most, acquisition.hopeless);
-        let best = judged.first().ok_or(ColorModelError::NoPose)?;
-        let mut vigilance = self.vigilance;
-        if !is_start {
-            vigilance.observe(best.seen.fit, &self.params);
-        }
-
-        let share = share_of_first(&judged) * best.estimate.share;
-        let mut outcome = FrameOutcome {
-            fix: self.fix(&best.estimate, share, &vigilance),
-            estimate: PoseEstimate { share, ..best.estimate.clone() },
-            tempering: best.seen.weighed.tempering,
-            effective_particles: best.seen.weighed.weights.effective_sample_size(),
-            n_particles: 0,
-            n_hypotheses: judged.len(),
-            log_evidence_per_pixel: best.seen.weighed.log_evidence / self.params.pixels.independent_pixels,
-            fit: best.seen.fit,
-            kidnap_suspicion: vigilance.suspicion(&self.params),
-            light_probabilities: best.seen.weighed.light_probabilities(),
-        };
-        let hypotheses =
-            judged.iter().map(|one| self.renewed(one, judged.len(), rng)).collect::<Result<Vec<_>, _>>()?;
-        outcome.n_particles = hypotheses.iter().map(|hypothesis| hypothesis.particles.len()).sum();
-        let is_sure = vigilance.is_sound(&self.params) && self.is_decided(&judged);
-        if let Some(light) = hypotheses.first().and_then(Hypothesis::light)
-            && is_sure
-            && (is_search || routine.n_in_vain() > 0)
-        {
-            self.trusted = Arc::clone(light);
-        }
-        self.routine = routine.after(is_search, is_sure, vigilance.is_as_usual(&self.params));
-        (self.hypotheses, self.shots, self.vigilance) = (hypotheses, shots, vigilance);
-        (self.walked, self.n_updates) = (Walked::default(), self.n_updates + 1);
-        Ok(outcome)
-    }
-
-    /// Whether it is time to look for the robot again although nothing is doubted.
-    fn is_routine(&self) -> bool {
-        let AcquisitionParams { n_frames, every, .. } = self.params.acquisition;
-        self.routine.is_due(every, self.vigilance.is_sound(&self.params))
-            && self.n_updates > n_frames
-            && !self.vigilance.is_undecided(&self.params)
-    }
-
-    /// Whether one place is left, or those beside it are as far behind as a place has to be that nothing speaks for.
-    fn is_decided(&self, judged: &[Judged]) -> bool {
-        let AcquisitionParams { elsewhere, n_frames, .. } = self.params.acquisition;
-        judged.len() == 1 || (lead(judged) >= elsewhere && self.n_updates >= n_frames)
-    }
-
-    fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
-        let expected = (self.camera.width() as usize, self.camera.height() as usize);
-        let got = (image.width() as usize, image.height() as usize);
-        if expected != got {
-            return Err(ColorModelError::FrameSize { expected, got });
-        }
-        let unit = (mount.rotation.norm() - 1.0).abs() < 1e-6;
-        if !(unit && mount.translation.iter().all(|v| v.abs() < 1e3)) {
-            return Err(ColorModelError::NotFinite { what: "camera mount" });
-        }
+        self.particles = ancestors.iter().map(child).collect();
+        self.weights = NormalizedWeights::from_linear(vec![1.0; ancestors.len()])?;
         Ok(())
     }
 
-    fn fix(&self, estimate: &PoseEstimate, share: f64, vigilance: &Vigilance) -> Fix {
-        let is_narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
-        if vigilance.recent() < self.params.lost_fit {
-            Fix::Lost
-        } else if share > SURE
-            && is_narrow
-            && vigilance.suspicion(&self.params) < 1.0
-            && self.n_updates >= self.params.acquisition.n_frames
-        {
-            Fix::Tracking
-        } else {
-            Fix::Ambiguous
+    /// The dominant cluster.
+    pub(crate) fn estimate(&self) -> Result<PoseEstimate, ColorModelError> {
+        dominant_cluster(&self.poses().collect::<Vec<_>>()).ok_or(ColorModelError::NoPose)
+    }
+
+    /// Body poses with weights.
+    pub(crate) fn poses(&self) -> impl Iterator<Item = (Pose2<f64>, f64)> {
+        let bodies = self.particles.iter().map(|particle| particle.state.sampled.body);
+        bodies.zip(self.weights.as_slice().iter().copied())
+    }
+
+    /// Light of the heaviest particle.
+    pub(crate) fn light(&self) -> Option<&Arc<T>> {
+        let weighted = self.particles.iter().zip(self.weights.as_slice());
+        weighted.max_by(|a, b| a.1.total_cmp(b.1)).map(|(particle, _)| particle.state.shared_conditional())
+    }
+
+    pub(crate) fn set_max_particles(&mut self, max_particles: usize) {
+        self.max_particles = max_particles;
+    }
+
+    pub(crate) fn n_particles(&self) -> usize {
+        self.particles.len()
+    }
+}
+
+impl<T: LightingTracker + Clone> ColorParticle<T> {
+    /// A tracker that refuses the means stays as it is.
+    fn update_lighting(&mut self, params: &LocalizerParams) {
+        let means = color_means(&self.sums, params);
+        let mut light = self.state.conditional().clone();
+        if light.update_in(self.light, &means).is_ok() {
+            self.state.set_conditional(Arc::new(light));
         }
     }
+}
+
+/// The mean colour of each region of at least `min_pixels`, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3].
+pub(crate) fn color_means(sums: &[PixelSums], params: &LocalizerParams) -> ColorMeans {
+    let mean = |(color, sums): (usize, &PixelSums)| {
+        let is_used = sums.count() >= params.min_pixels.max(1) && params.withheld != Some(color);
+        (if is_used { sums.mean() } else { None }, sums.count())
+    };
+    ColorMeans::new(sums.iter().enumerate().map(mean))
+}
+
+/// The light drawn by `uniform`, and the log-likelihood that all lights sum to.
+pub(crate) fn draw_light(
+    light: &impl LightingTracker,
+    log_likelihoods: &[f64],
+    uniform: f64,
+) -> (usize, f64) {
+    let joint = |at: usize| light.light_probability(at).ln() + log_likelihoods[at];
+    let joint: Vec<f64> = (0..log_likelihoods.len()).map(joint).collect();
+    let sum = wayfix_gaussian_core::log_sum_exp(&joint);
+    let mut left = uniform;
+    let drawn = joint.iter().position(|log| {
+        left -= (log - sum).exp();
+        left < 0.0
+    });
+    let best = || joint.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(at, _)| at);
+    (drawn.unwrap_or_else(best), sum)
+}
+
+/// Weights under the largest power of the likelihood, up to 1, that leaves `least` effective particles, and that power.
+///
+/// A likelihood narrower than the distance between particles would leave one of them. Tempered, they contract over some frames; once they are as close as the
+/// likelihood is wide, the power is 1.
+pub(crate) fn tempered(
+    log_likelihoods: &[f64],
+    prior: &NormalizedWeights,
+    least: f64,
+) -> Result<(NormalizedWeights, f64), ColorModelError> {
+    let weights = |power: f64| {
+        let log_weight = |(l, w): (&f64, &f64)| if *l == f64::NEG_INFINITY { *l } else { power * l + w.ln() };
+        NormalizedWeights::from_log(
+            &log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>(),
+        )
+    };
+    let full = weights(1.0)?;
+    if full.effective_sample_size() >= least {
+        return Ok((full, 1.0));
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..f32::MANTISSA_DIGITS {
+        let middle = f64::midpoint(low, high);
+        let is_enough = weights(middle)?.effective_sample_size() >= least;
+        *(if is_enough { &mut low } else { &mut high }) = middle;
+    }
+    Ok((weights(low)?, low))
+}
+
+/// KLD-sampling on cells of half the radius of a place.
+fn n_particles<T, R: Rng + ?Sized>(
+    particles: &[ColorParticle<T>],
+    weights: &NormalizedWeights,
+    max: usize,
+    rng: &mut R,
+) -> Result<usize, ColorModelError> {
+    let kld = KldSampling::new(KldParams {
+        min_particles: max.div_ceil(2),
+        max_particles: max,
+        ..KldParams::default()
+    })?;
+    let cell = |at: &usize| {
+        let body = particles[*at].state.sampled.body;
+        grid_cell([body.x(), body.y(), body.heading()], [PLACE_RADIUS / 2.0; 3])
+    };
+    let cells: BTreeSet<_> = SystematicResampler.ancestors(weights, max, rng)?.iter().map(cell).collect();
+    Ok(kld.required(cells.len()))
+}
+
+#[cfg(feature = "parallel")]
+fn for_each<X: Send>(items: &mut [X], job: impl Fn(&mut X) + Sync + Send) {
+    use rayon::prelude::*;
+    items.par_iter_mut().for_each(job);
+}
+
+#[cfg(not(feature = "parallel"))]
+fn for_each<X>(items: &mut [X], job: impl Fn(&mut X)) {
+    items.iter_mut().for_each(job);
 }

@@ -1,45 +1,24 @@
-//! Where the robot is and what the light is, at once: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
+//! Localization in a coloured map with adaptive colours: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 
-mod acquisition;
-mod camera_error;
-mod candidate;
+mod background;
+mod buffer;
+mod camera;
+mod color_localizer;
+mod detections;
 mod estimate;
-mod evaluation;
-mod evidence;
 mod filter;
-mod hidden;
-mod hypothesis;
-mod judgement;
-mod light;
-mod niche;
+mod frame;
 mod odometry;
 mod outcome;
-mod palette;
 mod params;
-mod particle;
-mod relight;
-mod renewal;
-mod routine;
 mod search;
-mod seen;
-mod shots;
-mod sightings;
 mod start;
-mod surroundings;
-mod threads;
 mod trajectory;
-mod views;
-mod vigilance;
-mod weigh;
-mod weighed;
 
-pub use acquisition::AcquisitionParams;
-pub use camera_error::{CameraError, CameraNoise};
+pub use camera::{CameraError, CameraLocation, CameraNoise};
+pub use color_localizer::ColorLocalizer;
 pub use estimate::PoseEstimate;
-pub use filter::ColorLocalizer;
-pub use hidden::HiddenViews;
-pub use odometry::{OdometryNoise, OdometryStep};
+pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};
 pub use outcome::{Fix, FrameOutcome};
-pub use params::LocalizerParams;
-pub use particle::CameraLocation;
+pub use params::{LocalizerParams, SearchParams};
 pub use start::Start;

@@ -3,18 +3,43 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, SampleMotion};
 
-/// How the body moved between two frames, as far as is known.
+/// Motion of the body over an interval, as odometry reports it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryStep {
-    /// Motion in the robot's frame before the motion; `None` when the odometry is missing.
+    /// Motion in the body frame before the motion; `None` if there is no odometry.
     pub increment: Option<Pose2<f64>>,
-    /// Seconds it took.
+    /// Length of the interval, s.
     pub seconds: f64,
 }
 
-/// How far walking odometry is from the truth: standard deviations, proportional to the motion, plus what grows with time.
-///
-/// The defaults are for legged robots, whose paws slip: a fifth of the way, a fifth of the turn.
+/// A motion model that the localizer accepts: samples for particles, and standard deviations for the global search.
+/// ```
+/// use rand::Rng;
+/// use wayfix_color_model::{OdometryModel, OdometryStep};
+/// use wayfix_estimation_traits::{LieGroup, Pose2, SampleMotion};
+/// /// Exact odometry.
+/// struct Exact;
+/// impl SampleMotion for Exact {
+///     type State = Pose2<f64>;
+///     type Control = OdometryStep;
+///     fn sampler<R: Rng + ?Sized>(&self, step: &OdometryStep) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
+///         let increment = step.increment.unwrap_or_else(Pose2::identity);
+///         move |pose, _| pose.compose(&increment)
+///     }
+/// }
+/// impl OdometryModel for Exact {
+///     fn sigmas(&self, _: &OdometryStep) -> (f64, f64) {
+///         (0.0, 0.0)
+///     }
+/// }
+/// assert_eq!(Exact.sigmas(&OdometryStep { increment: None, seconds: 1.0 }), (0.0, 0.0));
+/// ```
+pub trait OdometryModel: SampleMotion<State = Pose2<f64>, Control = OdometryStep> {
+    /// Standard deviations of the translation, m on each axis, and of the rotation, rad, over a step.
+    fn sigmas(&self, step: &OdometryStep) -> (f64, f64);
+}
+
+/// Noise of the odometry of a walking robot: a share of the motion, and a random walk in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -23,32 +48,23 @@ pub struct OdometryStep {
     serde(default, deny_unknown_fields)
 )]
 pub struct OdometryNoise {
-    /// Metres per metre walked, along and across.
-    pub translation_per_metre: f64,
-    /// Metres per radian turned.
-    pub translation_per_radian: f64,
-    /// Metres per square root of a second, moving or not: being pushed.
+    /// Standard deviation as a share of the motion: m per m, rad per rad, and rad per m. Default 0.2: the feet of legged robots slip.
+    pub slip: f64,
+    /// Standard deviation of the translation, m per square root of a second, also at rest: other robots push. Default 0.03.
     pub translation_per_root_second: f64,
-    /// Radians per metre walked.
-    pub rotation_per_metre: f64,
-    /// Radians per radian turned.
-    pub rotation_per_radian: f64,
-    /// Radians per square root of a second, moving or not.
+    /// Standard deviation of the rotation, rad per square root of a second, also at rest. Default 0.06.
     pub rotation_per_root_second: f64,
-    /// Speed taken as standard deviation when odometry is missing, metres a second.
+    /// Standard deviation of the speed without odometry, m/s. Default 0.3: the top speed of a walking robot.
     pub unknown_speed: f64,
-    /// Turning rate taken as standard deviation when odometry is missing, radians a second.
+    /// Standard deviation of the turning rate without odometry, rad/s. Default 1.
     pub unknown_turning: f64,
 }
 
 impl Default for OdometryNoise {
     fn default() -> Self {
         Self {
-            translation_per_metre: 0.2,
-            translation_per_radian: 0.05,
+            slip: 0.2,
             translation_per_root_second: 0.03,
-            rotation_per_metre: 0.2,
-            rotation_per_radian: 0.2,
             rotation_per_root_second: 0.06,
             unknown_speed: 0.3,
             unknown_turning: 1.0,
@@ -57,32 +73,10 @@ impl Default for OdometryNoise {
 }
 
 impl OdometryNoise {
-    /// Standard deviations of translation (metres, along and across alike) and rotation (radians) over a step.
-    pub fn sigmas(&self, step: &OdometryStep) -> (f64, f64) {
-        let root_seconds = step.seconds.sqrt();
-        let Some(increment) = step.increment else {
-            return (
-                (self.unknown_speed * step.seconds).hypot(self.translation_per_root_second * root_seconds),
-                (self.unknown_turning * step.seconds).hypot(self.rotation_per_root_second * root_seconds),
-            );
-        };
-        let (walked, turned) = (increment.translation.norm(), increment.heading().abs());
-        let sigma = |per_metre: f64, per_radian: f64, per_root_second: f64| {
-            (per_metre * walked).hypot(per_radian * turned).hypot(per_root_second * root_seconds)
-        };
-        (
-            sigma(self.translation_per_metre, self.translation_per_radian, self.translation_per_root_second),
-            sigma(self.rotation_per_metre, self.rotation_per_radian, self.rotation_per_root_second),
-        )
-    }
-
-    pub(crate) fn values(&self) -> [(&'static str, f64); 8] {
+    pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
         [
-            ("translation per metre", self.translation_per_metre),
-            ("translation per radian", self.translation_per_radian),
+            ("slip", self.slip),
             ("translation per root second", self.translation_per_root_second),
-            ("rotation per metre", self.rotation_per_metre),
-            ("rotation per radian", self.rotation_per_radian),
             ("rotation per root second", self.rotation_per_root_second),
             ("unknown speed", self.unknown_speed),
             ("unknown turning", self.unknown_turning),
@@ -90,7 +84,62 @@ impl OdometryNoise {
     }
 }
 
-/// $`x_k = (x_{k-1} u_k) ⊞ n`$, the noise normal with [`sigmas`](OdometryNoise::sigmas).
+impl OdometryModel for OdometryNoise {
+    fn sigmas(&self, step: &OdometryStep) -> (f64, f64) {
+        let (translation, rotation) = match step.increment {
+            Some(increment) => {
+                let walked = increment.translation.norm();
+                (self.slip * walked, self.slip * walked.hypot(increment.heading()))
+            }
+            None => (self.unknown_speed * step.seconds, self.unknown_turning * step.seconds),
+        };
+        let root = step.seconds.sqrt();
+        (
+            translation.hypot(self.translation_per_root_second * root),
+            rotation.hypot(self.rotation_per_root_second * root),
+        )
+    }
+}
+
+/// Odometry between two frames.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OdometryDelta {
+    pub(crate) increment: Pose2<f64>,
+    pub(crate) seconds: f64,
+    /// Variances of the translation on each axis, and of the rotation.
+    variances: (f64, f64),
+}
+
+impl Default for OdometryDelta {
+    fn default() -> Self {
+        Self { increment: Pose2::identity(), seconds: 0.0, variances: (0.0, 0.0) }
+    }
+}
+
+impl OdometryDelta {
+    pub(crate) fn add(&mut self, step: &OdometryStep, model: &impl OdometryModel) {
+        let (translation, rotation) = model.sigmas(step);
+        let increment = step.increment.unwrap_or_else(Pose2::identity);
+        let variances = (translation * translation, rotation * rotation);
+        *self = self.then(&Self { increment, seconds: step.seconds, variances });
+    }
+
+    pub(crate) fn then(&self, next: &Self) -> Self {
+        Self {
+            increment: self.increment.compose(&next.increment),
+            seconds: self.seconds + next.seconds,
+            variances: (self.variances.0 + next.variances.0, self.variances.1 + next.variances.1),
+        }
+    }
+
+    /// Standard deviations of the translation on each axis, and of the rotation.
+    pub(crate) fn sigmas(&self) -> Vector3<f64> {
+        let translation = self.variances.0.sqrt();
+        Vector3::new(translation, translation, self.variances.1.sqrt())
+    }
+}
+
+/// $`x_k = (x_{k-1} u_k) ⊞ n`$ with normal noise of [`sigmas`](OdometryModel::sigmas).
 impl SampleMotion for OdometryNoise {
     type State = Pose2<f64>;
     type Control = OdometryStep;

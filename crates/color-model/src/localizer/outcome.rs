@@ -1,38 +1,38 @@
 use super::PoseEstimate;
 
-/// What one frame did.
+/// Result of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// Where the robot is, after the frame.
+    /// Pose of the body after the frame.
     pub estimate: PoseEstimate,
-    /// What that estimate is worth.
+    /// Quality of the estimate.
     pub fix: Fix,
     /// Effective number of particles after weighing.
     pub effective_particles: f64,
-    /// Power of the likelihood that left enough of them effective: below 1 while particles are too coarse for what the frame tells.
+    /// Exponent of the likelihood, at most 1: below 1 while the particles are too far apart for the likelihood of the frame.
     pub tempering: f64,
-    /// Number of particles after the frame.
+    /// Number of particles at the estimate.
     pub n_particles: usize,
-    /// Log of the mean likelihood ratio to the background, nats a pixel of the image, before tempering.
+    /// Log of the mean likelihood ratio to the background, nats a pixel, before tempering.
     pub log_evidence_per_pixel: f64,
-    /// How much better the best place explains the frame than the colours that the frame shows on average, nats a pixel: 0.2 to 0.5 where the
-    /// robot sees much of the map, about 0 or less where it sees none of it, or is elsewhere.
+    /// Log-likelihood of the image at the estimate relative to its average colours, nats a pixel: 0.2 to 0.5 where the image shows much of the map, 0 or less where
+    /// the background explains it better.
     pub fit: f64,
-    /// How long the recent fit has been low, as a share of the time after which the robot is looked for in doubt, 0 to 1.
-    pub kidnap_suspicion: f64,
-    /// Places that are still pursued.
+    /// Probability that the robot is at one of the alternative places.
+    pub alternative_probability: f64,
+    /// Number of places that are tracked: the estimate and its alternatives.
     pub n_hypotheses: usize,
-    /// Probability of each member of the lighting bank.
+    /// Probability of each light.
     pub light_probabilities: Vec<f64>,
 }
 
-/// What a pose estimate is worth.
+/// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fix {
-    /// One narrow cluster has most of the weight, and what is seen has not spoken against it for long.
+    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place.
     Tracking,
-    /// Several places fit, or one wide one.
+    /// Several places, or one that is wider.
     Ambiguous,
-    /// No particle explains what is seen, or nothing was seen for long: do not use the pose.
+    /// The last frames together do not tell the map at the estimate from the background with 95 % probability. Do not use the pose.
     Lost,
 }

@@ -1,7 +1,15 @@
-use super::{AcquisitionParams, CameraNoise, HiddenViews, OdometryNoise};
-use crate::{ColorModelError, PixelLikelihoodParams};
+use wayfix_integrity::RelocalizationParams;
 
-/// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
+use super::{CameraNoise, OdometryNoise};
+use crate::{ColorModelError, Occlusion, PixelLikelihoodParams};
+
+/// Parameters of [`ColorLocalizer`](crate::ColorLocalizer).
+///
+/// ```
+/// use wayfix_color_model::LocalizerParams;
+/// let published = LocalizerParams::as_published();
+/// assert!(published.relocalization.is_off() && published.search.n_drawn == 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -10,38 +18,54 @@ use crate::{ColorModelError, PixelLikelihoodParams};
     serde(default, deny_unknown_fields)
 )]
 pub struct LocalizerParams {
-    /// How pixels are weighed.
+    /// The pixel likelihood.
     pub pixels: PixelLikelihoodParams,
-    /// How far odometry is from the truth.
+    /// Noise of the odometry.
     pub odometry: OdometryNoise,
-    /// How far the camera is from where the joints say.
+    /// Noise of the camera's pose on the body.
     pub camera: CameraNoise,
-    /// How the robot is looked for at first.
-    pub acquisition: AcquisitionParams,
-    /// Fewest particles.
-    pub min_particles: usize,
-    /// Most particles while the robot knows where it is.
+    /// Global search at the start and for relocalization.
+    pub search: SearchParams,
+    /// The change test between the present pose and the places that a search finds; off with `false_alarms_per_km` 0.
+    pub relocalization: RelocalizationParams,
+    /// Largest number of particles of a place; the smallest is half of it. Default 1000.
     pub max_particles: usize,
-    /// Most particles while it does not: at a start anywhere, and after it was carried away.
-    pub max_particles_lost: usize,
-    /// Resample when the effective share of particles falls below this.
-    pub resample_below: f64,
-    /// Fewest pixels from which the mean of a colour is taken.
+    /// Smallest share of the effective particles that a frame leaves; its likelihood is tempered for that. 0 never tempers. Default 0.2.
+    pub tempering_min_ess_share: f64,
+    /// Smallest number of pixels from which the mean of a colour is taken. Default 30.
     pub min_pixels: u64,
-    /// A colour whose means the lighting filter never learns from, by its place in the map: what the other colours tell of it is seen then.
+    /// How often and for how long an object hides the whole view.
+    pub occlusion: Occlusion,
+    /// Index of a colour in the map whose means the lighting filter ignores: its estimate then comes from the other colours. Default none.
     pub withheld: Option<usize>,
-    /// Share of the effective particles that a frame has to leave: its likelihood is softened until it does.
-    pub least_effective: f64,
-    /// How often and for how long somebody stands in front of the camera.
-    pub hidden_views: HiddenViews,
-    /// How the long-term and the short-term average of the fit follow a frame's: rates of augmented Monte Carlo localization.
-    pub slow_rate: f64,
-    /// See [`slow_rate`](Self::slow_rate).
-    pub fast_rate: f64,
-    /// Recent fit below which the robot is looked for again.
-    pub doubtful_fit: f64,
-    /// Recent fit below which the robot is lost.
-    pub lost_fit: f64,
+}
+
+/// Parameters of the global search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct SearchParams {
+    /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
+    /// Default 16.
+    pub n_frames: usize,
+    /// Number of trajectories drawn; 0 never searches. Default 4000: one for each 0.3 m × 0.3 m × 0.3 rad of a field of 4 × 3 m, about.
+    pub n_drawn: usize,
+    /// Number of places that are refined at first; it is halved three times. Default 100.
+    pub n_places: usize,
+    /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
+    pub n_moves: u32,
+    /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
+    pub interval: f64,
+}
+
+impl Default for SearchParams {
+    fn default() -> Self {
+        Self { n_frames: 16, n_drawn: 4000, n_places: 100, n_moves: 10, interval: 1.0 }
+    }
 }
 
 impl Default for LocalizerParams {
@@ -50,43 +74,61 @@ impl Default for LocalizerParams {
             pixels: PixelLikelihoodParams::default(),
             odometry: OdometryNoise::default(),
             camera: CameraNoise::default(),
-            acquisition: AcquisitionParams::default(),
-            min_particles: 500,
+            search: SearchParams::default(),
+            relocalization: RelocalizationParams::default(),
             max_particles: 1000,
-            max_particles_lost: 5000,
-            resample_below: 0.5,
+            tempering_min_ess_share: 0.2,
             min_pixels: 30,
+            occlusion: Occlusion::default(),
             withheld: None,
-            least_effective: 0.2,
-            hidden_views: HiddenViews::default(),
-            slow_rate: 0.02,
-            fast_rate: 0.3,
-            doubtful_fit: 0.1,
-            lost_fit: 0.05,
         }
     }
 }
 
 impl LocalizerParams {
+    /// The method of [Schulz & Fox 2004, IV] alone: the pixel product of Eq. 16, particles from the start distribution, no search, no tempering, no hidden
+    /// frames.
+    pub fn as_published() -> Self {
+        Self {
+            pixels: PixelLikelihoodParams::as_published(),
+            search: SearchParams { n_drawn: 0, ..SearchParams::default() },
+            relocalization: RelocalizationParams::off(),
+            tempering_min_ess_share: 0.0,
+            occlusion: Occlusion { mean_time_hidden: 0.0, ..Occlusion::default() },
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         self.pixels.check()?;
-        for (what, value) in
-            self.odometry.values().into_iter().chain(self.camera.values()).chain(self.acquisition.values())
-        {
+        self.relocalization.validate()?;
+        let CameraNoise { rotation, height, correlation_time } = self.camera;
+        let camera = [
+            ("camera rotation", rotation),
+            ("camera height", height),
+            ("correlation time", correlation_time),
+        ];
+        let not_negative = self
+            .odometry
+            .values()
+            .into_iter()
+            .chain(camera)
+            .chain([("search interval", self.search.interval)]);
+        for (what, value) in not_negative {
             check(what, value, 0.0, f64::MAX)?;
         }
-        for (what, value) in self.hidden_views.values() {
-            check(what, value, f64::MIN_POSITIVE, f64::MAX)?;
-        }
-        check("fewest particles", self.min_particles as f64, 1.0, f64::MAX)?;
-        check("most particles", self.max_particles as f64, self.min_particles as f64, f64::MAX)?;
-        check("most particles lost", self.max_particles_lost as f64, self.max_particles as f64, f64::MAX)?;
-        check("least effective share", self.least_effective, 0.0, 1.0)?;
-        check("resample below", self.resample_below, 0.0, 1.0)?;
-        check("slow rate", self.slow_rate, 0.0, self.fast_rate)?;
-        check("fast rate", self.fast_rate, 0.0, 1.0)?;
-        check("doubtful fit", self.doubtful_fit, -1.0, 1.0)?;
-        check("fit of a lost robot", self.lost_fit, -1.0, 1.0)
+        check("number of frames", self.search.n_frames as f64, 1.0, f64::MAX)?;
+        check("number of places", self.search.n_places as f64, 1.0, f64::MAX)?;
+        check("number of moves", f64::from(self.search.n_moves), 0.0, f64::from(u16::MAX))?;
+        check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
+        check(
+            "smallest share of effective particles after tempering",
+            self.tempering_min_ess_share,
+            0.0,
+            1.0,
+        )?;
+        check("mean time of a free view (s)", self.occlusion.mean_time_free, f64::MIN_POSITIVE, f64::MAX)?;
+        check("mean time of a hidden view (s)", self.occlusion.mean_time_hidden, 0.0, f64::MAX)
     }
 }
 

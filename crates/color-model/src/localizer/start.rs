@@ -1,16 +1,16 @@
 use rand::{Rng, RngExt, distr::Distribution};
 use wayfix_color_map::ColorMap;
-use wayfix_estimation_traits::{Pose2, wrap_angle};
+use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use crate::ColorModelError;
 
-/// Where the robot may be at the start.
+/// Prior of the start pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
-    /// About here.
+    /// Normally distributed.
     Near(Gaussian<Pose2<f64>>),
-    /// Anywhere above the map, facing anywhere.
+    /// Uniform over the map, with any heading.
     Anywhere,
 }
 
@@ -28,7 +28,7 @@ impl Area {
         Ok(Self { min: [extent.min.x, extent.min.y], max: [extent.max.x, extent.max.y] })
     }
 
-    /// The nearest pose inside: boards stop a robot that would walk out.
+    /// Moves the pose to the nearest one inside: boards stop a robot at the border.
     pub(crate) fn clamp(&self, pose: &mut Pose2<f64>) {
         for axis in 0..2 {
             pose.translation[axis] = pose.translation[axis].clamp(self.min[axis], self.max[axis]);
@@ -40,10 +40,9 @@ impl Area {
         (0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&pose.translation[axis]))
     }
 
-    /// The pose after half a turn of the world about the middle.
-    pub(crate) fn opposite(&self, pose: &Pose2<f64>) -> Pose2<f64> {
-        let [x, y] = [0, 1].map(|axis| self.min[axis] + self.max[axis]);
-        Pose2::new(x - pose.x(), y - pose.y(), wrap_angle(pose.heading() + std::f64::consts::PI))
+    /// Size of the area, m².
+    pub(crate) fn size(&self) -> f64 {
+        (self.max[0] - self.min[0]) * (self.max[1] - self.min[1])
     }
 
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {
@@ -66,25 +65,9 @@ impl Start {
     /// $`\ln p`$ of a pose, up to a constant.
     pub(crate) fn log_prior(&self, pose: &Pose2<f64>) -> f64 {
         match self {
-            // A start without uncertainty is drawn where it is; it cannot be weighed.
+            // An exact start has no density; it is drawn at its mean.
             Self::Near(about) => about.mahalanobis_squared(pose).map_or(0.0, |squared| -0.5 * squared),
             Self::Anywhere => 0.0,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_opposite_of_the_opposite_is_here() {
-        let area = Area { min: [-1.0, 0.0], max: [3.0, 2.0] };
-        let pose = Pose2::new(2.5, 0.5, 0.3);
-        let opposite = area.opposite(&pose);
-        assert_eq!((opposite.x(), opposite.y()), (-0.5, 1.5));
-        assert!((opposite.heading() - (0.3 - std::f64::consts::PI)).abs() < 1e-12);
-        let back = area.opposite(&opposite);
-        assert!((back.x() - 2.5).abs() < 1e-12 && (back.heading() - 0.3).abs() < 1e-12);
     }
 }

@@ -44,7 +44,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 3
     let ours = setup.localizer;
     Ok([
         through(N_PEOPLE, ours)?,
-        through(N_PEOPLE, LocalizerParams { reject_outliers: false, ..ours })?,
+        through(N_PEOPLE, LocalizerParams { skip_outlier_views_in_mapping: false, ..ours })?,
         through(0, ours)?,
     ])
 }

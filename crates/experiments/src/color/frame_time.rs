@@ -32,9 +32,7 @@ pub fn frame_time(
     let mut points = Vec::new();
     for n_particles in N_PARTICLES {
         let mut params = params.clone();
-        params.localizer.min_particles = n_particles;
         params.localizer.max_particles = n_particles;
-        params.localizer.max_particles_lost = n_particles;
         let run = run(&records[..end], Arc::clone(map), bank.clone(), &params, None, seed, |_| {})?;
         let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
         points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));

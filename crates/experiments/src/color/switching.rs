@@ -35,7 +35,7 @@ pub fn switching(
         let run = run(records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
         Ok(rates(&run))
     };
-    let curves = [("jump_markov", localized(bank)?), ("single", localized(single)?)];
+    let curves = [("jump_markov", localized(bank)?), ("single_gaussian", localized(single)?)];
     let frames = labelled_frames(records, params.yuv_standard, map.colors().len())?;
     let jump = JumpMarkovFilterParams::default();
     let pixels = &params.localizer.pixels;
@@ -43,11 +43,15 @@ pub fn switching(
         ("known_pose_jump_markov", follow(JumpMarkovLightingTracker::new(bank, jump)?, &frames, pixels)?),
         ("known_pose_imm", follow(ImmLightingTracker::new(bank)?, &frames, pixels)?),
         ("known_pose_gpb2", follow(Gpb2LightingTracker::new(bank)?, &frames, pixels)?),
-        ("known_pose_single", follow(single.member(0).clone(), &frames, pixels)?),
+        ("known_pose_single_gaussian", follow(single.member(0).clone(), &frames, pixels)?),
     ];
     let mut metrics = Vec::new();
     for (name, curve) in curves.iter().chain(&known) {
-        metrics.push(Metric::new(format!("{name}_rate"), mean(curve.iter().map(|point| point.1)), ""));
+        metrics.push(Metric::new(
+            format!("{name}_classification_rate"),
+            mean(curve.iter().map(|point| point.1)),
+            "",
+        ));
         metrics.push(Metric::new(format!("{name}_worst_drop"), worst_drop(curve, switches), ""));
     }
     let figures = vec![

@@ -12,4 +12,4 @@ pub use lawn_mower::LawnMowerRoute;
 pub use params::RouteParams;
 pub use pieces::{Route, RoutePiece};
 pub use rounded_rectangle::RoundedRectangleRoute;
-pub use waypoints::WaypointRoute;
+pub use waypoints::RandomWaypointRoute;

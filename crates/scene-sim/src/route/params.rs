@@ -1,13 +1,13 @@
 use rand::Rng;
 
-use super::{CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, WaypointRoute};
+use super::{CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route};
 use crate::SimulationError;
 
 /// Parameters of a route.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::route::{RouteParams, WaypointRoute};
-/// let params = WaypointRoute { n_waypoints: 20, half_width_m: 5.0, turn_radius_m: 0.5 };
+/// use wayfix_scene_sim::route::{RouteParams, RandomWaypointRoute};
+/// let params = RandomWaypointRoute { n_waypoints: 20, half_width_m: 5.0, turn_radius_m: 0.5 };
 /// let route = RouteParams::Waypoints(params).build(&mut ChaCha8Rng::seed_from_u64(1))?;
 /// assert!(!route.is_closed() && route.length_m() > 20.0);
 /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
@@ -22,7 +22,7 @@ pub enum RouteParams {
     /// There and back in rows.
     LawnMower(LawnMowerRoute),
     /// From one random point to the next.
-    Waypoints(WaypointRoute),
+    Waypoints(RandomWaypointRoute),
 }
 
 impl RouteParams {

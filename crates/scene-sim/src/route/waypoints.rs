@@ -15,7 +15,7 @@ const ATTEMPTS: usize = 1000;
 ///
 /// Curvature is 0 or ± 1/radius; turns reach at most two radii beyond the square. Starts at the origin along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaypointRoute {
+pub struct RandomWaypointRoute {
     /// Number of points to visit, 1 to 100 000.
     pub n_waypoints: usize,
     /// Half the side of the square, metres.
@@ -24,7 +24,7 @@ pub struct WaypointRoute {
     pub turn_radius_m: f64,
 }
 
-impl WaypointRoute {
+impl RandomWaypointRoute {
     /// The open route.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use super::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioPa
 use crate::drive::{SlipParams, WheeledRobotParams};
 use crate::monobot::MonobotParams;
 use crate::random::NoiseShape;
-use crate::route::{CircleRoute, RoundedRectangleRoute, RouteParams, WaypointRoute};
+use crate::route::{CircleRoute, RandomWaypointRoute, RoundedRectangleRoute, RouteParams};
 use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma};
 use crate::sensor::{GaussianOdometryParams, OdometryKind, RangeBearingParams, WheelOdometryParams};
 use crate::world::{CorridorLoop, RoadsideLandmarks, UniformLandmarkField, WorldLayout};
@@ -53,7 +53,7 @@ fn loop_unlabelled() -> PlanarParams {
 /// that grow with range and hang together in time, two other robots, codes that no table lists.
 fn office_velocity() -> PlanarParams {
     let wander = |half_width_m| {
-        RouteParams::Waypoints(WaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
+        RouteParams::Waypoints(RandomWaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
     };
     PlanarParams {
         layout: WorldLayout::UniformField(UniformLandmarkField {

@@ -2,12 +2,12 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::CmlSystem;
-use crate::system::{self, EstimateLog, EstimateWriter, write_pose};
+use crate::system::{self, EstimateRecorder, EstimateWriter, write_pose};
 
 /// Writes the views, the path and the references of an appearance map beside the records, for viewers.
-pub type CmlEstimateLog = EstimateLog<CmlDrawing>;
+pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawing>;
 
-/// State of the drawing of [`CmlEstimateLog`].
+/// State of the drawing of [`CmlEstimateRecorder`].
 #[derive(Default)]
 pub struct CmlDrawing {
     n_written: usize,

@@ -12,7 +12,7 @@ pub fn summarize(run: &mut CmlRun) -> ReportRun {
     let n = frames.len() as f64;
     let certain = frames.iter().filter(|frame| frame.is_certain).count() as f64;
     metrics.push(Metric::new("n_references", run.system.localizer().map().len() as f64, ""));
-    metrics.push(Metric::new("n_views", n, ""));
+    metrics.push(Metric::new("n_localized_views", n, ""));
     metrics.push(Metric::new("unimodal_share", certain / n.max(1.0), ""));
     let micros = |frame: &CmlViewResult| 1e6 * frame.step.as_secs_f64();
     let timings = vec![

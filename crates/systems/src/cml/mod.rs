@@ -17,7 +17,7 @@ mod run;
 mod saved;
 mod system;
 
-pub use estimates::{CmlDrawing, CmlEstimateLog};
+pub use estimates::{CmlDrawing, CmlEstimateRecorder};
 pub use figures::{summarize, task};
 pub use odometry::synthetic_odometry;
 pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};

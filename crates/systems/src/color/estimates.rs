@@ -2,12 +2,12 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::ColorSystem;
-use crate::system::{self, EstimateLog, EstimateWriter, write_robot};
+use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
-pub type ColorEstimateLog = EstimateLog<ColorDrawing>;
+pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawing>;
 
-/// State of the drawing of [`ColorEstimateLog`].
+/// State of the drawing of [`ColorEstimateRecorder`].
 #[derive(Default)]
 pub struct ColorDrawing {
     n_written: usize,

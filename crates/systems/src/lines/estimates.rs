@@ -1,12 +1,12 @@
 use wayfix_sensor_log::{DrawingShape, LogError, Record, RecordData, ViewerDrawing, topics};
 
 use super::{LineSystem, ScanWalls};
-use crate::system::{self, EstimateLog, EstimateWriter};
+use crate::system::{self, EstimateRecorder, EstimateWriter};
 
 /// Writes the walls of every scan beside the records, for viewers.
-pub type LineEstimateLog = EstimateLog<LineDrawing>;
+pub type LineEstimateRecorder = EstimateRecorder<LineDrawing>;
 
-/// State of the drawing of [`LineEstimateLog`].
+/// State of the drawing of [`LineEstimateRecorder`].
 pub struct LineDrawing {
     n_written: usize,
     /// Number of walls of the scan before; surplus ones are overwritten with nothing.

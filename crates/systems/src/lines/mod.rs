@@ -1,6 +1,6 @@
 //! Walls in the scans of a log: line segments fitted to laser echoes.
 //!
-//! [`LineSystem`] takes the records, [`summarize`] gives the figures, [`plots`] the pictures, [`LineEstimateLog`] the scans and walls for viewers;
+//! [`LineSystem`] takes the records, [`summarize`] gives the figures, [`plots`] the pictures, [`LineEstimateRecorder`] the scans and walls for viewers;
 //! [`WallScore`] compares with true walls.
 
 mod estimates;
@@ -9,7 +9,7 @@ mod plots;
 mod system;
 mod truth;
 
-pub use estimates::{LineDrawing, LineEstimateLog};
+pub use estimates::{LineDrawing, LineEstimateRecorder};
 pub use figures::summarize;
 pub use plots::plots;
 pub use system::{LineSystem, ScanWalls};

@@ -3,17 +3,17 @@ use std::collections::VecDeque;
 use wayfix_sensor_log::{Stamp, Velocity};
 use wayfix_slam_ekf::VelocityControl;
 
-use super::RobotCalibrationParams;
+use super::RobotTimingParams;
 
 /// Velocity commands of the log, and the motion they make: later, and in shorter turns.
 ///
-/// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `turn_command_shortening`, whichever
+/// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `turn_command_time_loss`, whichever
 /// turns less: a base that takes commands in its own rhythm loses a little of every turn. With both zero a command simply
 /// holds until the next. No command holds longer than `velocity_hold`; after that the motion is unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Commands {
     delay: i128,
-    shortening: i128,
+    time_loss: i128,
     hold: i128,
     rows: VecDeque<(i128, Velocity)>,
 }
@@ -21,10 +21,10 @@ pub(super) struct Commands {
 const STANDING: Velocity = Velocity { linear: 0.0, angular: 0.0 };
 
 impl Commands {
-    pub(super) fn new(robot: &RobotCalibrationParams) -> Self {
+    pub(super) fn new(robot: &RobotTimingParams) -> Self {
         Self {
             delay: nanoseconds(robot.command_delay),
-            shortening: nanoseconds(robot.turn_command_shortening),
+            time_loss: nanoseconds(robot.turn_command_time_loss),
             hold: nanoseconds(robot.velocity_hold),
             rows: VecDeque::new(),
         }
@@ -55,7 +55,7 @@ impl Commands {
         let (from, to) =
             (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
         let changes =
-            self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.shortening, stamp + self.hold]);
+            self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.time_loss, stamp + self.hold]);
         let mut cuts: Vec<i128> = changes.filter(|cut| (from..to).contains(cut)).collect();
         cuts.extend([from, to]);
         cuts.sort_unstable();
@@ -83,13 +83,13 @@ impl Commands {
 
     /// Forgets what no longer acts at `time` or later.
     pub(super) fn forget_before(&mut self, time: Stamp) {
-        let horizon = i128::from(time.nanoseconds()) - self.delay - self.shortening;
+        let horizon = i128::from(time.nanoseconds()) - self.delay - self.time_loss;
         while self.rows.get(1).is_some_and(|(successor, _)| *successor <= horizon) {
             self.rows.pop_front();
         }
     }
 
-    /// What the robot does at a time of the log: of the rows in force within the shortening before it, the one that turns least; `None` when
+    /// What the robot does at a time of the log: of the rows in force within the time loss before it, the one that turns least; `None` when
     /// no command holds.
     fn acting_at(&self, time: i128) -> Option<Velocity> {
         let until = self.rows.partition_point(|(stamp, _)| *stamp <= time);
@@ -97,7 +97,7 @@ impl Commands {
         if time >= since + self.hold {
             return None;
         }
-        let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.shortening).saturating_sub(1);
+        let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.time_loss).saturating_sub(1);
         let window = || self.rows.range(from..until).map(|(_, velocity)| *velocity);
         if window().any(|row| row.angular > 0.0) && window().any(|row| row.angular < 0.0) {
             return Some(Velocity { angular: 0.0, ..newest });
@@ -119,7 +119,7 @@ mod tests {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
     }
 
-    fn turn_of_100_ms(robot: RobotCalibrationParams) -> Vec<VelocityControl> {
+    fn turn_of_100_ms(robot: RobotTimingParams) -> Vec<VelocityControl> {
         let mut commands = Commands::new(&robot);
         for (milliseconds, angular) in [(0, 0.0), (100, 0.5), (200, 0.0)] {
             commands.push(at(milliseconds), Velocity { linear: 0.1, angular });
@@ -133,30 +133,30 @@ mod tests {
 
     #[test]
     fn a_command_holds_until_the_next() {
-        let pieces = turn_of_100_ms(RobotCalibrationParams::default());
+        let pieces = turn_of_100_ms(RobotTimingParams::default());
         assert_eq!(pieces.len(), 3);
         assert!((turned(&pieces) - 0.05).abs() < 1e-12);
         assert!((pieces.iter().map(|piece| piece.duration).sum::<f64>() - 0.5).abs() < 1e-12);
     }
 
     #[test]
-    fn a_delayed_command_acts_later_and_an_eroded_turn_is_shorter() {
-        let robot = RobotCalibrationParams {
+    fn a_delayed_command_acts_later_and_a_lossy_turn_is_shorter() {
+        let robot = RobotTimingParams {
             command_delay: 0.15,
-            turn_command_shortening: 0.04,
-            ..RobotCalibrationParams::default()
+            turn_command_time_loss: 0.04,
+            ..RobotTimingParams::default()
         };
         let pieces = turn_of_100_ms(robot);
         assert!((turned(&pieces) - 0.5 * 0.06).abs() < 1e-12); // 40 ms of the 100 are lost
         let before: f64 =
             pieces.iter().take_while(|piece| piece.angular == 0.0).map(|piece| piece.duration).sum();
-        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + shortening
+        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + time loss
         assert_eq!(pieces[0].linear, 0.0); // stands until the first command acts
     }
 
     #[test]
     fn command_expires_and_the_motion_is_unknown() {
-        let mut commands = Commands::new(&RobotCalibrationParams::default());
+        let mut commands = Commands::new(&RobotTimingParams::default());
         commands.push(at(0), Velocity { linear: 1.0, angular: 0.0 });
         let driven = |pieces: &[VelocityControl]| pieces.iter().map(|p| p.linear * p.duration).sum::<f64>();
         assert!((driven(&commands.between(at(0), at(5000))) - 1.0).abs() < 1e-12);
@@ -168,10 +168,10 @@ mod tests {
 
     #[test]
     fn forgets_only_what_no_longer_acts() {
-        let robot = RobotCalibrationParams {
+        let robot = RobotTimingParams {
             command_delay: 0.15,
-            turn_command_shortening: 0.04,
-            ..RobotCalibrationParams::default()
+            turn_command_time_loss: 0.04,
+            ..RobotTimingParams::default()
         };
         let mut commands = Commands::new(&robot);
         for step in 0..100 {

@@ -14,7 +14,7 @@ mod unknown_motion;
 
 pub use figures::summarize;
 pub use front_end::{PointFrontEnd, PointSensor, PointSystem};
-pub use params::{MountingParams, PointSlamParams, RobotCalibrationParams, RobotProfile};
+pub use params::{MountingParams, PointSlamParams, RobotProfile, RobotTimingParams};
 pub use plots::plots;
 pub use run::{PointRun, run, run_on};
 pub use state::{OdometryKind, PointState, SavedPointMap};

@@ -33,8 +33,8 @@ pub struct PointSlamParams {
     /// Number of true landmarks of the log, nearest to the start first, that the robot is given as known: anchors that tie the map to the
     /// world. For logs that have true landmarks.
     pub n_anchors: usize,
-    /// Timing and calibration of the robot.
-    pub robot: RobotCalibrationParams,
+    /// Timing of the robot, kind and scale of its ranges.
+    pub robot: RobotTimingParams,
     /// Where things sit on the robot.
     pub mounting: MountingParams,
     /// Measures of a car-like vehicle.
@@ -74,16 +74,16 @@ pub struct MountingParams {
     pub antenna_y: f64,
 }
 
-/// Timing and calibration of a robot.
+/// Timing of a robot, kind and scale of its ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RobotCalibrationParams {
+pub struct RobotTimingParams {
     /// Time from the exposure of the sensor to the stamp of what it saw, s.
     pub sensor_latency: f64,
     /// Time from the stamp of a velocity command to the motion it makes, s.
     pub command_delay: f64,
-    /// By how much a commanded turn is shorter than the log says, s.
-    pub turn_command_shortening: f64,
+    /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
+    pub turn_command_time_loss: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
     /// navigation.
     pub velocity_hold: f64,
@@ -93,12 +93,12 @@ pub struct RobotCalibrationParams {
     pub range_scale_sigma: f64,
 }
 
-impl Default for RobotCalibrationParams {
+impl Default for RobotTimingParams {
     fn default() -> Self {
         Self {
             sensor_latency: 0.0,
             command_delay: 0.0,
-            turn_command_shortening: 0.0,
+            turn_command_time_loss: 0.0,
             velocity_hold: VELOCITY_HOLD,
             range_is_depth: false,
             range_scale_sigma: 0.0,
@@ -142,7 +142,7 @@ impl PointSlamParams {
                 association: None,
                 start_pose: None,
                 n_anchors: 0,
-                robot: RobotCalibrationParams::default(),
+                robot: RobotTimingParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),
                 sensor: RangeBearingSensor::default(),
@@ -213,10 +213,10 @@ impl PointSlamParams {
             .named(profile),
             // Measured as residuals against truth on set 7, robots 1-3 (docs/adr/0019-parameters-of-the-utias-profile.md).
             RobotProfile::Utias => Self {
-                robot: RobotCalibrationParams {
+                robot: RobotTimingParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
-                    turn_command_shortening: 0.04,
+                    turn_command_time_loss: 0.04,
                     velocity_hold: VELOCITY_HOLD,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,

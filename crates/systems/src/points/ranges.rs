@@ -49,7 +49,7 @@ impl PointSlamParams {
         for (name, value, (range, words)) in [
             number!(robot.sensor_latency, DELAY),
             number!(robot.command_delay, DELAY),
-            number!(robot.turn_command_shortening, DELAY),
+            number!(robot.turn_command_time_loss, DELAY),
             number!(robot.velocity_hold, NOT_NEGATIVE),
             number!(robot.range_scale_sigma, NOT_NEGATIVE),
             number!(mounting.sensor_x, PLACE),

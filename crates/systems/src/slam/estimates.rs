@@ -6,12 +6,12 @@ use wayfix_sensor_log::{LogError, Record, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{FrontEnd, SlamSystem};
-use crate::system::{self, EstimateLog, EstimateWriter, write_robot};
+use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Path and map beside the records, for viewers.
-pub type SlamEstimateLog<F> = EstimateLog<SlamDrawing<F>>;
+pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawing<F>>;
 
-/// What [`SlamEstimateLog`] has drawn so far.
+/// What [`SlamEstimateRecorder`] has drawn so far.
 pub struct SlamDrawing<F> {
     n_written: usize,
     path: Vec<Pose2<f64>>,

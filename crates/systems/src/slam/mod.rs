@@ -18,7 +18,7 @@ mod system;
 
 pub use association::AssociationRule;
 pub(crate) use association::ChosenRule;
-pub use estimates::{SlamDrawing, SlamEstimateLog};
+pub use estimates::{SlamDrawing, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 use event_name::event_name;

@@ -1,7 +1,7 @@
 //! The common pipeline: records in time order → a [`System`] → estimates, events and figures.
 
 mod drive;
-mod estimate_log;
+mod estimate_recorder;
 mod events;
 mod held_velocity;
 mod known_start;
@@ -15,7 +15,7 @@ mod robot_drawing;
 mod stopwatch;
 
 pub use drive::{RunStep, drive};
-pub use estimate_log::{EstimateDrawing, EstimateLog, EstimateWriter, OTHER_POSES};
+pub use estimate_recorder::{EstimateDrawing, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
 pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};
 pub use known_start::TrueStartPose;

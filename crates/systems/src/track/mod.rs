@@ -33,7 +33,7 @@ pub use error::TrackSystemError;
 pub use figures::summarize;
 pub use frame_tracker::{FrameTracker, TargetColorDistribution};
 pub use method::TrackingMethod;
-pub use output::estimates::TrackEstimateLog;
+pub use output::estimates::TrackEstimateRecorder;
 pub use output::plots::plots;
 pub use output::run_history::TrackRunHistory;
 pub use params::TrackParams;

@@ -28,7 +28,7 @@ impl DescriptorKind {
     /// Its name in figures.
     pub fn name(self) -> &'static str {
         match self {
-            Self::MeanVar => "mean_var",
+            Self::MeanVar => "mean_std",
             Self::Fft6 => "fft6",
             Self::Hist6 => "hist6",
             Self::Joined => "joined",

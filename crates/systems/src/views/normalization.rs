@@ -21,7 +21,7 @@ impl LightNormalization {
     /// Its name in figures.
     pub fn name(self) -> &'static str {
         match self {
-            Self::None => "none",
+            Self::None => "unnormalized",
             Self::WholeScene => "whole_scene",
             Self::Online => "online",
         }

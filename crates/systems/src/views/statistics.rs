@@ -11,10 +11,10 @@ pub fn p_value_metrics(system: &ViewSystem) -> Result<Vec<Metric>, ViewsError> {
     let between = appearance.p_values_between_states().map_or(f64::NAN, |p| p.mean);
     let same = appearance.p_values_of(system.seen())?;
     let figures = [
-        ("p_between_mean", between),
-        ("p_same_min", same.min),
-        ("p_same_max", same.max),
-        ("p_same_mean", same.mean),
+        ("p_value_between_states_mean", between),
+        ("p_value_same_state_min", same.min),
+        ("p_value_same_state_max", same.max),
+        ("p_value_same_state_mean", same.mean),
     ];
     Ok(figures.map(|(name, value)| Metric::new(name, value, "")).into())
 }

@@ -14,7 +14,7 @@ use wayfix_evaluation::{
         MachineInfo, Report, ReportRun, ReportSuite, RunSummary, foxglove_layout, table, table::TableStyle,
     },
 };
-use wayfix_systems::system::{EstimateDrawing, EstimateLog};
+use wayfix_systems::system::{EstimateDrawing, EstimateRecorder};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";
@@ -59,9 +59,9 @@ impl<'a> Outputs<'a> {
     pub(super) fn estimates<D: EstimateDrawing>(
         &mut self,
         origin: LogFormat,
-    ) -> Result<Option<EstimateLog<D>>> {
+    ) -> Result<Option<EstimateRecorder<D>>> {
         let sinks = self.sinks()?;
-        Ok(if sinks.is_empty() { None } else { Some(EstimateLog::new(sinks, origin)?) })
+        Ok(if sinks.is_empty() { None } else { Some(EstimateRecorder::new(sinks, origin)?) })
     }
 
     /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.

@@ -22,9 +22,9 @@ const GRACE: Duration = Duration::from_secs(2);
 /// It is read-only: viewers cannot change or publish anything.
 /// ```
 /// use wayfix::live::{LiveError, LiveServer, PlaybackPace};
-/// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateLog};
+/// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateRecorder};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
-/// let estimates = SlamEstimateLog::<PointFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
+/// let estimates = SlamEstimateRecorder::<PointFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
 /// let again = LiveServer::start(server.address());
 /// assert!(matches!(again, Err(LiveError::InUse { .. })));

@@ -24,7 +24,7 @@ fn every_kind_of_table_gives_the_same_run() {
     let expected = outcome.figures();
     // Views 0.25 m apart, every fifth withheld: the nearest is mostly 0.25 m away.
     assert!(outcome.metric("error_mean_m") < 0.25, "{expected:?}");
-    assert_eq!(outcome.metric("n_views"), (drive.frames.len() / 5) as f64);
+    assert_eq!(outcome.metric("n_localized_views"), (drive.frames.len() / 5) as f64);
     assert!(outcome.stderr.contains("learn, then localize"), "{}", outcome.stderr);
     assert!(outcome.stderr.contains("headings are those of the table"), "{}", outcome.stderr);
 
@@ -208,7 +208,7 @@ fn a_cut_image_and_a_nan_row_leave_the_rest() {
         assert!(outcome.stderr.contains(said), "{said}: {}", outcome.stderr);
     }
     assert_eq!((outcome.event("log_problem"), outcome.event("unit_assumed")), (3, 1));
-    assert_eq!(outcome.metric("n_views"), ((drive.frames.len() - 3) / 5) as f64);
+    assert_eq!(outcome.metric("n_localized_views"), ((drive.frames.len() - 3) / 5) as f64);
 }
 
 #[test]

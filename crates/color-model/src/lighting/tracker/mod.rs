@@ -8,7 +8,9 @@ mod single;
 pub use interacting::{Gpb2LightingTracker, ImmLightingTracker};
 pub use jump_markov::JumpMarkovLightingTracker;
 
-use super::{ColorDensity, ColorMeans};
+use nalgebra::{DMatrix, DVector};
+
+use super::{ColorDensity, ColorMeans, LightingFilterParams};
 use crate::ColorModelError;
 
 /// Tracks the light from the colour means of successive images; poses, and hence labels, are known.
@@ -36,4 +38,41 @@ pub trait LightingTracker {
     /// # Errors
     /// Returns an error if the belief has no mean any more.
     fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError>;
+
+    /// Number of lights that the next image may have been taken in. A switching tracker has one for each member of its bank.
+    fn n_lights(&self) -> usize {
+        1
+    }
+
+    /// Probability that the next image is taken in this light.
+    fn light_probability(&self, _light: usize) -> f64 {
+        1.0
+    }
+
+    /// [`colors`](Self::colors) if the next image is taken in this light.
+    ///
+    /// # Errors
+    /// As for [`colors`](Self::colors).
+    fn colors_in(&self, _light: usize) -> Result<Vec<ColorDensity>, ColorModelError> {
+        self.colors()
+    }
+
+    /// Joint belief about the means of all colours in this light, $`N(μ, Σ)`$. `None` if the tracker has no correlations between colours; every
+    /// pixel then counts the uncertainty of its colour.
+    fn joint_belief(&self, _light: usize) -> Option<(&DVector<f64>, &DMatrix<f64>)> {
+        None
+    }
+
+    /// [`update`](Self::update) with an image taken in this light.
+    ///
+    /// # Errors
+    /// As for [`update`](Self::update), and if there is no such light.
+    fn update_in(&mut self, _light: usize, means: &ColorMeans) -> Result<(), ColorModelError> {
+        self.update(means)
+    }
+
+    /// Noise of pixels and of means.
+    fn noise(&self) -> LightingFilterParams {
+        LightingFilterParams::default()
+    }
 }

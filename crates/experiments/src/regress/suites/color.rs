@@ -10,7 +10,7 @@ use wayfix_sensor_log::{OpenOptions, Record};
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    color::{self, ColorEstimateLog, ColorSystemParams, ParticleSnapshots, priors},
+    color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors},
     system::{RunStep, System},
 };
 
@@ -145,7 +145,7 @@ fn switches(job: &PlannedJob<'_>) -> Vec<usize> {
 fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<ReportRun> {
     let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
     let (name, path) = job.estimates_file();
-    let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
+    let mut estimates = ColorEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleSnapshots::new(color::n_images(&records));

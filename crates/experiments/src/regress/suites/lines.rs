@@ -7,7 +7,7 @@ use super::super::PlannedJob;
 use crate::simplification::simplification;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    lines::{self, LineEstimateLog, LineSystem},
+    lines::{self, LineEstimateRecorder, LineSystem},
     system::{RunStep, System, drive},
 };
 
@@ -34,7 +34,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 fn walls(job: &PlannedJob<'_>, params: LineExtractionParams) -> Result<ReportRun> {
     let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
     let (name, path) = job.estimates_file();
-    let mut walls = LineEstimateLog::create(&path, log.meta().first_format())?;
+    let mut walls = LineEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let mut system = LineSystem::new(params)?;
     drive(&mut system, &records, |RunStep { system, record, .. }| walls.observe(record, system));

@@ -8,7 +8,7 @@ use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
-    slam::{AssociationRule, SlamEstimateLog},
+    slam::{AssociationRule, SlamEstimateRecorder},
     system::RunStep,
     walls::{self, WallSlamParams},
 };
@@ -48,7 +48,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     params.association = settings.association.or(params.association);
 
     let (name, path) = job.estimates_file();
-    let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
+    let mut estimates = SlamEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let observe =
         |RunStep { system, record, .. }: RunStep<'_, PointSystem>| estimates.observe(record, system);

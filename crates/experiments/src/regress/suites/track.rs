@@ -9,7 +9,7 @@ use wayfix_sensor_log::{LogFormat, OpenOptions};
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::track::{
-    self, TrackEstimateLog, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+    self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
 };
 
 /// Settings of a run.
@@ -77,7 +77,7 @@ fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates_file();
     let mut estimates =
-        TrackEstimateLog::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
+        TrackEstimateRecorder::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
     let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
     Ok(ReportRun { log: Some(name), figures: track::plots(&run.run_history)?, ..track::summarize(&mut run) })

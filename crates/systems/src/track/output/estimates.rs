@@ -15,14 +15,14 @@ use super::{overlay, run_history::outline};
 use crate::system::EstimateWriter;
 
 /// Writes images with outlines to an MCAP file or to viewers, and boxes to a text in the format of the truth.
-pub struct TrackEstimateLog {
+pub struct TrackEstimateRecorder {
     writer: EstimateWriter,
     boxes: Box<dyn Write>,
     n_lines: usize,
     failure: Option<anyhow::Error>,
 }
 
-impl TrackEstimateLog {
+impl TrackEstimateRecorder {
     /// Creates both files; `origin` is the format of the source log.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ use super::super::{
 use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
-    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
+    color::{self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
     system::{RunStep, Stopwatch, System},
 };
 
@@ -119,7 +119,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let records = arguments.truth.put_into(records)?;
 
     let mut outputs = Outputs::open("color", &arguments.common)?;
-    let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
+    let mut estimates: Option<ColorEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let mut particles = ParticleSnapshots::new(color::n_images(&records));
     let bar = terminal::bar(records.len(), "colour localization");

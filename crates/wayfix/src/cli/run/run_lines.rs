@@ -14,7 +14,7 @@ use super::super::{
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    lines::{self, LineEstimateLog, LineSystem},
+    lines::{self, LineEstimateRecorder, LineSystem},
     system::{RunStep, Stopwatch, System, drive},
 };
 
@@ -63,7 +63,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let (records, read) = read_all(log);
 
     let mut outputs = Outputs::open("lines", &arguments.common)?;
-    let mut walls: Option<LineEstimateLog> = outputs.estimates(origin)?;
+    let mut walls: Option<LineEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = terminal::bar(records.len(), "walls");
     drive(&mut system, &records, |RunStep { system, record, .. }| {

@@ -13,7 +13,7 @@ use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
-        AssociationRule, FrontEnd, FrontEndState, PeriodicSaver, SlamEstimateLog, SlamRun, SlamState,
+        AssociationRule, FrontEnd, FrontEndState, PeriodicSaver, SlamEstimateRecorder, SlamRun, SlamState,
         SlamSystem, StateOf,
     },
     system::{RunStep, Stopwatch},
@@ -161,7 +161,7 @@ where
     StateOf<F>: Serialize + DeserializeOwned,
 {
     let mut outputs = Outputs::open("slam", &arguments.common)?;
-    let mut estimates: Option<SlamEstimateLog<F>> = outputs.estimates(origin)?;
+    let mut estimates: Option<SlamEstimateRecorder<F>> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| PeriodicSaver::new(path, arguments.save_every));
     let bar = terminal::bar(n_records, "EKF-SLAM");

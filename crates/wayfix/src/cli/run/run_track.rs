@@ -17,7 +17,7 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     system::{Stopwatch, System},
     track::{
-        self, TargetStart, TrackEstimateLog, TrackParams, TrackSystem, TrackerConfig, TrackingMethod,
+        self, TargetStart, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod,
         TrueBoxes, parse_box,
     },
 };
@@ -148,7 +148,7 @@ impl Arguments {
     }
 }
 
-fn open_estimates(outputs: &mut Outputs<'_>, origin: LogFormat) -> Result<Option<TrackEstimateLog>> {
+fn open_estimates(outputs: &mut Outputs<'_>, origin: LogFormat) -> Result<Option<TrackEstimateRecorder>> {
     let sinks = outputs.sinks()?;
     if sinks.is_empty() {
         return Ok(None);
@@ -160,5 +160,5 @@ fn open_estimates(outputs: &mut Outputs<'_>, origin: LogFormat) -> Result<Option
         }
         None => Box::new(io::sink()),
     };
-    Ok(Some(TrackEstimateLog::new(sinks, boxes, origin)?))
+    Ok(Some(TrackEstimateRecorder::new(sinks, boxes, origin)?))
 }

@@ -24,8 +24,8 @@ use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     cml::{
-        self, CameraReadingMode, CmlEstimateLog, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
-        PanoramaMap, PeriodicMapSaver, ViewReader,
+        self, CameraReadingMode, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
+        CmlTask, PanoramaMap, PeriodicMapSaver, ViewReader,
         recording::{FrameRecording, PoseTables},
     },
     system::{RunStep, Stopwatch, System},
@@ -50,7 +50,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
     let mut outputs = Outputs::open("cml", &arguments.common)?;
-    let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
+    let mut estimates: Option<CmlEstimateRecorder> = outputs.estimates(origin)?;
     let mut saver = arguments.save.clone().map(|path| PeriodicMapSaver::new(path, arguments.save_every));
     let bar = terminal::bar(plan.records.len(), "appearance map");
     let run = cml::run(

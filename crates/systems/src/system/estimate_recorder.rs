@@ -31,13 +31,13 @@ pub trait EstimateDrawing: Default {
 }
 
 /// Writes the estimates of a system beside the records of its log, to an MCAP file or to the viewers Foxglove and Rerun.
-pub struct EstimateLog<D: EstimateDrawing> {
+pub struct EstimateRecorder<D: EstimateDrawing> {
     writer: EstimateWriter,
     drawing: D,
     failure: Option<LogError>,
 }
 
-impl<D: EstimateDrawing> EstimateLog<D> {
+impl<D: EstimateDrawing> EstimateRecorder<D> {
     /// Creates the file; `origin` is the format of the source log.
     ///
     /// # Errors

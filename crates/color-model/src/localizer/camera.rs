@@ -3,14 +3,22 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{Manifold, Pose2, Pose3};
 
-/// How far the camera is from where the joints say: what a walking body does to it.
+/// Difference between the camera's pose and the pose that the joints report.
 ///
 /// With the body's planar pose these make the six degrees of freedom of the camera's location in [Schulz & Fox 2004, IV].
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_color_model::CameraError;
+/// use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+/// let tilted = CameraError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.0 };
+/// let camera = tilted.camera_pose(&Pose2::identity(), &Pose3::identity());
+/// assert!((camera.rotation * Vector3::x()).z < 0.0); // a positive tilt looks down
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraError {
-    /// Rotation about the camera's x, y and z axes: roll, tilt (positive looks down) and pan (positive looks left), radians.
+    /// Rotation about the camera's x, y and z axes: roll, tilt (positive looks down) and pan (positive looks left), rad.
     pub rotation: Vector3<f64>,
-    /// Height above where it should be, metres.
+    /// Height above the reported one, m.
     pub height: f64,
 }
 
@@ -35,64 +43,56 @@ impl CameraError {
     serde(default, deny_unknown_fields)
 )]
 pub struct CameraNoise {
-    /// Of roll, radians.
-    pub roll: f64,
-    /// Of tilt, radians.
-    pub tilt: f64,
-    /// Of pan, radians.
-    pub pan: f64,
-    /// Of height, metres.
+    /// Standard deviation of roll, tilt and pan, rad. Default 0.025: the body of a walking four-legged robot sways by 1° to 2°.
+    pub rotation: f64,
+    /// Standard deviation of the height, m. Default 0.008.
     pub height: f64,
-    /// Time constant of the errors' correlation, seconds; 0 draws new ones each frame.
-    pub seconds: f64,
+    /// Time constant of the errors' correlation, s; 0 draws independent errors for each frame. Default 0.2: half a step of the gait.
+    pub correlation_time: f64,
 }
 
 impl Default for CameraNoise {
     fn default() -> Self {
-        let degree = std::f64::consts::PI / 180.0;
-        Self { roll: 1.5 * degree, tilt: 1.5 * degree, pan: 1.0 * degree, height: 0.008, seconds: 0.2 }
+        Self { rotation: 0.025, height: 0.008, correlation_time: 0.2 }
     }
 }
 
 impl CameraNoise {
-    /// The error `seconds` later: $`e' = ρ e + \sqrt{1 - ρ^2}\, n`$, $`ρ = e^{-t/τ}`$, whose standard deviations stay the same.
+    /// The error `seconds` later: $`e' = ρ e + \sqrt{1 - ρ^2}\, n`$, $`ρ = e^{-t/τ}`$, with constant standard deviations.
     pub fn after<R: Rng + ?Sized>(&self, error: &CameraError, seconds: f64, rng: &mut R) -> CameraError {
-        self.mixed(error, self.kept(seconds), rng)
-    }
-
-    /// An error of which nothing is known.
-    pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> CameraError {
-        self.mixed(&CameraError::default(), 0.0, rng)
-    }
-
-    pub(crate) fn mixed<R: Rng + ?Sized>(&self, error: &CameraError, rho: f64, rng: &mut R) -> CameraError {
-        let deviates = Vector4::from_fn(|_, _| rng.sample(StandardNormal));
-        self.blended(error, rho, &deviates)
-    }
-
-    /// The same with the standard normal deviates that the rest is made of.
-    pub(crate) fn blended(&self, error: &CameraError, rho: f64, deviates: &Vector4<f64>) -> CameraError {
-        let deviates = deviates * (1.0 - rho * rho).sqrt();
-        let sigmas = Vector3::new(self.roll, self.tilt, self.pan);
+        let rho = if self.correlation_time > 0.0 { (-seconds / self.correlation_time).exp() } else { 0.0 };
+        let fresh = (1.0 - rho * rho).sqrt();
+        let drawn = self.sample(rng);
         CameraError {
-            rotation: error.rotation * rho + sigmas.component_mul(&deviates.xyz()),
-            height: error.height * rho + self.height * deviates.w,
+            rotation: error.rotation * rho + drawn.rotation * fresh,
+            height: error.height * rho + drawn.height * fresh,
         }
     }
 
-    /// Share of an error that is left after some time.
-    pub(crate) fn kept(&self, seconds: f64) -> f64 {
-        if self.seconds > 0.0 { (-seconds / self.seconds).exp() } else { 0.0 }
+    /// A draw from the distribution of errors.
+    pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> CameraError {
+        self.scaled(&Vector4::from_fn(|_, _| rng.sample(StandardNormal)))
     }
 
-    pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
-        [
-            ("roll noise", self.roll),
-            ("tilt noise", self.tilt),
-            ("pan noise", self.pan),
-            ("height noise", self.height),
-            ("time constant of camera errors", self.seconds),
-        ]
+    /// The error with these standard normal deviates.
+    pub(crate) fn scaled(&self, deviates: &Vector4<f64>) -> CameraError {
+        CameraError { rotation: deviates.xyz() * self.rotation, height: deviates.w * self.height }
+    }
+}
+
+/// The camera's location in six degrees of freedom: the planar body pose and the error of the camera's mount.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraLocation {
+    /// Pose of the body on the ground.
+    pub body: Pose2<f64>,
+    /// Difference between the camera's pose and the pose that the joints report.
+    pub error: CameraError,
+}
+
+impl CameraLocation {
+    /// Pose of the camera in the world, if the joints report it at `mount` in the body frame.
+    pub fn camera_pose(&self, mount: &Pose3<f64>) -> Pose3<f64> {
+        self.error.camera_pose(&self.body, mount)
     }
 }
 
@@ -127,7 +127,7 @@ mod tests {
             variance += after.rotation.y.powi(2) / f64::from(n);
             product += after.rotation.y * before.rotation.y / f64::from(n);
         }
-        let (expected, rho) = (noise.tilt.powi(2), (-0.1 / noise.seconds).exp());
+        let (expected, rho) = (noise.rotation.powi(2), (-0.1 / noise.correlation_time).exp());
         // Five standard errors of a variance and (at most as large) of a covariance.
         let bound = 5.0 * expected * (2.0 / f64::from(n)).sqrt();
         assert!((variance - expected).abs() < bound && (product - rho * expected).abs() < bound);

@@ -1,0 +1,65 @@
+use std::collections::VecDeque;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use wayfix_estimation_traits::{LogWeight, Pose3};
+
+use super::odometry::OdometryDelta;
+use crate::YuvImage;
+
+/// A frame, and the odometry since the one before.
+#[derive(Clone, Debug)]
+pub(crate) struct BufferedFrame {
+    pub(crate) image: YuvImage,
+    pub(crate) mount: Pose3<f64>,
+    pub(crate) odometry: OdometryDelta,
+    /// Log-likelihood of the frame at the most probable place, nats.
+    pub(crate) log_evidence: LogWeight,
+}
+
+impl BufferedFrame {
+    /// Angle between the views of two successive frames, rad: rotation of the camera, and translation as seen at a distance of 1 m.
+    pub(crate) fn view_change(&self, next: &Self) -> f64 {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), next.odometry.increment.heading());
+        let rotation = self.mount.rotation.inverse() * turn * next.mount.rotation;
+        rotation.angle() + next.odometry.increment.translation.norm()
+    }
+}
+
+/// The last frames, for the global search.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FrameBuffer(VecDeque<BufferedFrame>);
+
+impl FrameBuffer {
+    /// Adds the newest frame and keeps the last `capacity`.
+    pub(crate) fn push(&mut self, frame: BufferedFrame, capacity: usize) {
+        self.0.push_back(frame);
+        while self.0.len() > capacity {
+            self.0.pop_front();
+        }
+    }
+
+    /// Another place is the most probable one: what the frames say of it is not known.
+    pub(crate) fn forget_evidence(&mut self) {
+        self.0.iter_mut().for_each(|frame| frame.log_evidence = f64::NEG_INFINITY);
+    }
+
+    /// The newest frame.
+    pub(crate) fn newest(&self) -> Option<&BufferedFrame> {
+        self.0.back()
+    }
+
+    /// At most `n` frames, evenly spaced, with the newest, and the odometry between them.
+    pub(crate) fn spaced(&self, n: usize) -> Vec<BufferedFrame> {
+        let stride = self.0.len().div_ceil(n.max(1)).max(1);
+        let mut chosen: Vec<BufferedFrame> = Vec::new();
+        let mut odometry = OdometryDelta::default();
+        for (at, frame) in self.0.iter().enumerate() {
+            odometry = odometry.then(&frame.odometry);
+            if (self.0.len() - 1 - at).is_multiple_of(stride) {
+                chosen.push(BufferedFrame { odometry, ..frame.clone() });
+                odometry = OdometryDelta::default();
+            }
+        }
+        chosen
+    }
+}

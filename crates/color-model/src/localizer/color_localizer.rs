@@ -1,0 +1,389 @@
+use std::{collections::VecDeque, sync::Arc};
+
+use rand::Rng;
+use wayfix_color_map::{ColorMap, PinholeCamera};
+use wayfix_estimation_traits::{Pose2, Pose3};
+use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
+
+use super::{
+    Fix, FrameOutcome, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    buffer::{BufferedFrame, FrameBuffer},
+    camera::CameraLocation,
+    estimate::{PLACE_RADIUS, is_same_place},
+    filter::ColorFilter,
+    frame::{PreparedFrame, Scene},
+    odometry::OdometryDelta,
+    search::{Found, Search},
+    start::Area,
+};
+use crate::{
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingBank, LightingTracker, LikelihoodModel,
+    PixelLikelihoodParams, YuvImage,
+};
+
+/// Probability of a place from which on it is tracked.
+const TRACKING_PROBABILITY: f64 = 0.95;
+
+/// Localizes in a coloured map and learns the light at the same time: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
+///
+/// A particle is a camera location and, conditioned on it, a tracker of the light `T`. The odometry model `M` and the likelihood `L` are parameters too.
+/// Where the start is unknown, and once a second while the robot drives, a global search proposes places; [`RelocalizationTest`] decides between them and the
+/// present one.
+///
+/// ```
+/// use std::sync::Arc;
+/// use nalgebra::{DMatrix, DVector, Vector3};
+/// use rand::SeedableRng;
+/// use wayfix_color_map::{PinholeCamera, ColorId, ColorMap, ColoredShape};
+/// use wayfix_color_model::{ColorLocalizer, LightingBank, LightingFilter, LightingFilterParams, LocalizerParams, OdometryStep, Start, YuvImage};
+/// use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::MarkovChain;
+/// let vertices = [(-2.0, -1.5), (2.0, -1.5), (2.0, 1.5), (-2.0, 1.5)].map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
+/// let map = ColorMap::new(vec!["green".into()], vec![ColoredShape::Polygon { color: ColorId(0), vertices }])?;
+/// let prior = Gaussian::new(DVector::from_vec(vec![70.0, 120.0, 110.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// let bank = LightingBank::new(vec![LightingFilter::new(prior, LightingFilterParams::default())?], MarkovChain::sticky(1, 1.0)?)?;
+/// let start = Start::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
+/// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let camera = PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?;
+/// let mut localizer = ColorLocalizer::new(Arc::new(map), camera, bank, &start, LocalizerParams::default(), &mut rng)?;
+/// let forward = OdometryStep { increment: Some(Pose2::new(0.01, 0.0, 0.0)), seconds: 0.1 };
+/// localizer.predict(&forward, &mut rng)?;
+/// // The lower half of the image is carpet.
+/// let pixels = (0..32 * 24).map(|at| if at < 32 * 12 { [20, 128, 128] } else { [90, 120, 110] }).collect();
+/// let mount = Pose3 { translation: Vector3::new(0.0, 0.0, 0.2), ..Pose3::identity() };
+/// let outcome = localizer.update(&YuvImage::new(32, 24, pixels)?, &mount, &mut rng)?;
+/// assert!(outcome.estimate.pose.mean().translation.norm() < 0.5);
+/// assert!(localizer.light().member(0).mean()[0] > 75.0); // the carpet is brighter than the prior's 70
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct ColorLocalizer<T = LightingBank, M = OdometryNoise, L = PixelLikelihoodParams> {
+    map: Arc<ColorMap>,
+    camera: PinholeCamera,
+    area: Area,
+    background: Option<BackgroundColorModel>,
+    params: LocalizerParams,
+    odometry: M,
+    likelihood: L,
+    start: Start,
+    /// The light before the first frame.
+    prior: Arc<T>,
+    /// The most probable place.
+    present: ColorFilter<T>,
+    relocalization: RelocalizationTest<ColorFilter<T>>,
+    /// Since the last frame.
+    delta: OdometryDelta,
+    buffer: FrameBuffer,
+    /// The light of the most probable place before each frame of the buffer.
+    lights: VecDeque<Arc<T>>,
+    n_updates: usize,
+    /// Since the last search, s.
+    since_search: f64,
+    /// Log-likelihood ratios of the last frames to the background at the estimate, nats.
+    log_ratios: VecDeque<f64>,
+}
+
+impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
+    /// A localizer with this prior of the pose and this tracker of the light, with the odometry noise and the pixel likelihood of the parameters.
+    ///
+    /// # Errors
+    /// Returns an error if a parameter is out of range, the map is empty, or the map and the light differ in their number of colours.
+    pub fn new<R: Rng + ?Sized>(
+        map: Arc<ColorMap>,
+        camera: PinholeCamera,
+        light: T,
+        start: &Start,
+        params: LocalizerParams,
+        rng: &mut R,
+    ) -> Result<Self, ColorModelError> {
+        Self::with_models(map, camera, (light, params.odometry, params.pixels), start, params, rng)
+    }
+}
+
+impl<T, M, L> ColorLocalizer<T, M, L>
+where
+    T: LightingTracker + Clone + Send + Sync,
+    M: OdometryModel,
+    L: LikelihoodModel,
+{
+    /// [`new`](ColorLocalizer::new) with a model of the odometry and of the likelihood. The global search uses the pixel likelihood.
+    ///
+    /// # Errors
+    /// As for [`new`](ColorLocalizer::new).
+    pub fn with_models<R: Rng + ?Sized>(
+        map: Arc<ColorMap>,
+        camera: PinholeCamera,
+        (light, odometry, likelihood): (T, M, L),
+        start: &Start,
+        params: LocalizerParams,
+        rng: &mut R,
+    ) -> Result<Self, ColorModelError> {
+        params.check()?;
+        let (expected, got) = (map.colors().len(), light.colors()?.len());
+        if expected != got {
+            return Err(ColorModelError::Dimension { what: "colours of the light", expected, got });
+        }
+        let area = Area::of(&map)?;
+        let prior = Arc::new(light);
+        let location = |_| CameraLocation { body: start.draw(&area, rng), error: params.camera.sample(rng) };
+        Ok(Self {
+            present: ColorFilter::new((0..params.max_particles).map(location), &prior)?,
+            relocalization: RelocalizationTest::new(params.relocalization)?,
+            map,
+            camera,
+            area,
+            background: None,
+            params,
+            odometry,
+            likelihood,
+            start: start.clone(),
+            prior,
+            delta: OdometryDelta::default(),
+            buffer: FrameBuffer::default(),
+            lights: VecDeque::new(),
+            n_updates: 0,
+            since_search: 0.0,
+            log_ratios: VecDeque::new(),
+        })
+    }
+
+    /// Uses a background learned from images instead of the colours of each frame.
+    #[must_use]
+    pub fn with_background(self, background: BackgroundColorModel) -> Self {
+        Self { background: Some(background), ..self }
+    }
+
+    /// The weighted body poses of the particles at the most probable place.
+    pub fn poses(&self) -> impl Iterator<Item = (Pose2<f64>, f64)> {
+        self.present.poses()
+    }
+
+    /// The light of the heaviest particle.
+    pub fn light(&self) -> &T {
+        self.present.light().unwrap_or(&self.prior)
+    }
+
+    /// Moves every particle by the odometry and its noise. The motions since the last frame add up.
+    ///
+    /// # Errors
+    /// Returns an error if the increment is not finite, or the time negative or not finite. The state is unchanged then.
+    pub fn predict<R: Rng + ?Sized>(
+        &mut self,
+        step: &OdometryStep,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
+        if !step.increment.is_none_or(|increment| increment.is_finite()) {
+            return Err(ColorModelError::NotFinite { what: "odometry increment" });
+        }
+        if !(step.seconds >= 0.0 && step.seconds.is_finite()) {
+            return Err(ColorModelError::OutOfRange { what: "seconds of a step", value: step.seconds });
+        }
+        let distance = step.increment.map_or(0.0, |increment| increment.translation.norm());
+        self.relocalization.drive(distance)?;
+        let alternatives = self.relocalization.alternatives_mut().iter_mut().map(|one| &mut one.hypothesis);
+        let sample = self.odometry.sampler(step);
+        for filter in std::iter::once(&mut self.present).chain(alternatives) {
+            filter.predict(|body| {
+                let mut body = sample(body, rng);
+                self.area.clamp(&mut body);
+                body
+            });
+        }
+        self.delta.add(step, &self.odometry);
+        Ok(())
+    }
+
+    /// Learns from a frame; the joints report the camera at `mount` in the body frame. [Schulz & Fox 2004, IV]
+    ///
+    /// # Errors
+    /// Returns an error if the image is not of the camera's size, the mount is not finite, or no particle explains the frame. The state is unchanged then.
+    pub fn update<R: Rng + ?Sized>(
+        &mut self,
+        image: &YuvImage,
+        mount: &Pose3<f64>,
+        rng: &mut R,
+    ) -> Result<FrameOutcome, ColorModelError> {
+        self.check(image, mount)?;
+        let scene = self.scene(&self.likelihood);
+        let frame = PreparedFrame::new(&scene, image, mount, &self.colors()?)?;
+        let mut present = self.present.clone();
+        let light = self.present.light().unwrap_or(&self.prior).clone();
+        self.step(&mut present, &frame, rng)?;
+        let mut relocalization = self.relocalization.clone();
+        let odometry = self.delta;
+        let log_evidence = present.weighing.log_evidence;
+        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry, log_evidence };
+        let share =
+            self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(&newest)));
+        let step = |alternative: &mut ColorFilter<T>| match self.step(alternative, &frame, rng) {
+            Ok(()) => share * alternative.weighing.log_evidence,
+            Err(_) => f64::NEG_INFINITY,
+        };
+        relocalization.observe(share * log_evidence, step)?;
+        let mut buffer = self.buffer.clone();
+        buffer.push(newest, self.params.search.n_frames);
+        let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
+        if relocalization.decide(&mut present) {
+            present.set_max_particles(self.params.max_particles);
+            buffer.forget_evidence();
+        }
+
+        self.n_updates += 1;
+        self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
+        self.log_ratios.push_back(present.weighing.mean_log_likelihood);
+        self.lights.push_back(light);
+        let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_frames);
+        self.log_ratios.drain(..n_old);
+        self.lights.drain(..n_old);
+        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
+        self.delta = OdometryDelta::default();
+        self.outcome()
+    }
+
+    /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
+    fn step<R: Rng + ?Sized>(
+        &self,
+        filter: &mut ColorFilter<T>,
+        frame: &PreparedFrame<'_, L>,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
+        let seconds = self.delta.seconds;
+        filter.predict_lighting(seconds)?; // Eq. 6
+        filter.weigh(frame, seconds, &self.params, rng)?; // Eqs. 14–16
+        let ancestors = filter.resample(rng)?;
+        filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
+    }
+
+    /// Searches for the robot if it is time to: at the start among the places that the start allows, later anywhere. Returns whether it did.
+    fn propose_places<R: Rng + ?Sized>(
+        &self,
+        buffer: &FrameBuffer,
+        present: &mut ColorFilter<T>,
+        relocalization: &mut RelocalizationTest<ColorFilter<T>>,
+        rng: &mut R,
+    ) -> Result<bool, ColorModelError> {
+        let params = &self.params.search;
+        let (n_frames, is_first) = (self.n_updates + 1, self.n_updates == 0);
+        let is_start = n_frames <= params.n_frames && n_frames.is_power_of_two();
+        let is_due = n_frames > params.n_frames && self.since_search + self.delta.seconds >= params.interval;
+        let is_on = !self.params.relocalization.is_off();
+        if params.n_drawn == 0 || !(is_start || (is_due && is_on)) {
+            return Ok(false);
+        }
+        let start = if is_start { &self.start } else { &Start::Anywhere };
+        let frames = buffer.spaced(params.n_frames.div_ceil(2));
+        let shares = frames.windows(2).map(|pair| self.independent_share(pair[0].view_change(&pair[1])));
+        let share = (1.0 + shares.sum::<f64>()) / frames.len().max(1) as f64; // the first frame is new
+        let tracked: f64 = frames.iter().map(|frame| frame.log_evidence).sum();
+        let search = Search::new(
+            self.scene(&self.params.pixels),
+            (&self.area, start),
+            &self.params,
+            [&self.prior, self.lights.front().unwrap_or(&self.prior)],
+            frames,
+        )?;
+        let here = if is_first { None } else { Some(*present.estimate()?.pose.mean()) };
+        let mut found = search.run(here, rng)?;
+        let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
+        if is_start {
+            let best = found.remove(0);
+            *present = best.filter;
+            present.set_max_particles(self.params.max_particles);
+            let even =
+                found.into_iter().map(|one| (one.filter, share * (one.log_evidence - best.log_evidence)));
+            relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;
+        } else if let Some((place, refined)) = known {
+            // Particles and search give lower bounds of the evidence of the present place.
+            let log_evidence = tracked.max(refined);
+            let is_tracked = |one: &Found<T>| {
+                let others =
+                    relocalization.alternatives().iter().filter_map(|other| other.hypothesis.estimate().ok());
+                is_same_place(&place, &one.place)
+                    || others.into_iter().any(|other| is_same_place(other.pose.mean(), &one.place))
+            };
+            found.retain(|one| !is_tracked(one) && one.log_evidence > log_evidence);
+            let prior = 1.0 / self.n_places();
+            relocalization.propose(found.into_iter().map(|one| RelocalizationCandidate {
+                hypothesis: one.filter,
+                prior,
+                log_likelihood_ratio: share * (one.log_evidence - log_evidence),
+            }))?;
+        }
+        Ok(true)
+    }
+
+    /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`: what is not on the map, as another robot,
+    /// stays in view until the camera has turned by its field of view, and is one error until then.
+    fn independent_share(&self, angle: f64) -> f64 {
+        let half = f64::from(self.camera.height()) / 2.0;
+        let field_of_view = 2.0 * (half / self.camera.fy()).atan();
+        (angle / field_of_view).min(1.0)
+    }
+
+    /// Number of distinguishable places on the map: of cells of the size of a place.
+    fn n_places(&self) -> f64 {
+        (self.area.size() * std::f64::consts::TAU / PLACE_RADIUS.powi(3)).max(1.0)
+    }
+
+    /// Densities of all colours under each light of the most probable place and of its alternatives.
+    fn colors(&self) -> Result<Vec<Vec<ColorDensity>>, ColorModelError> {
+        let alternatives = self.relocalization.alternatives().iter().map(|one| &one.hypothesis);
+        let lights = std::iter::once(&self.present).chain(alternatives).filter_map(ColorFilter::light);
+        lights.flat_map(|light| (0..light.n_lights()).map(|at| light.colors_in(at))).collect()
+    }
+
+    fn scene<'a, K>(&'a self, likelihood: &'a K) -> Scene<'a, K> {
+        Scene {
+            map: &self.map,
+            camera: self.camera,
+            pixels: &self.params.pixels,
+            likelihood,
+            background: self.background.as_ref(),
+            noise: self.prior.noise(),
+        }
+    }
+
+    fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
+        let expected = (self.camera.width() as usize, self.camera.height() as usize);
+        let got = (image.width() as usize, image.height() as usize);
+        if expected != got {
+            return Err(ColorModelError::FrameSize { expected, got });
+        }
+        let is_unit = (mount.rotation.norm() - 1.0).abs() < f64::from(f32::EPSILON);
+        if !(is_unit && mount.translation.iter().all(|value| value.is_finite())) {
+            return Err(ColorModelError::NotFinite { what: "camera mount" });
+        }
+        Ok(())
+    }
+
+    fn outcome(&self) -> Result<FrameOutcome, ColorModelError> {
+        let (weighing, pixels) = (&self.present.weighing, &self.params.pixels);
+        let alternative_probability = self.relocalization.probability();
+        let estimate = self.present.estimate()?;
+        let share = estimate.share * (1.0 - alternative_probability);
+        let per_pixel =
+            1.0 / pixels.independent_pixels.min(f64::from(self.camera.width() * self.camera.height()));
+        let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
+        let n_frames = self.params.search.n_frames;
+        // At even odds, the frames tell the map at the estimate from the background.
+        let odds = TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
+        let is_explained = self.log_ratios.iter().sum::<f64>() > odds.ln();
+        let fix = match (self.n_updates >= n_frames, is_explained) {
+            (true, false) => Fix::Lost,
+            (true, true) if share > TRACKING_PROBABILITY && is_narrow => Fix::Tracking,
+            _ => Fix::Ambiguous,
+        };
+        Ok(FrameOutcome {
+            fix,
+            estimate: PoseEstimate { share, ..estimate },
+            tempering: weighing.tempering,
+            effective_particles: weighing.effective_particles,
+            n_particles: self.present.n_particles(),
+            n_hypotheses: 1 + self.relocalization.alternatives().len(),
+            log_evidence_per_pixel: weighing.log_evidence * per_pixel,
+            fit: weighing.mean_log_likelihood * per_pixel,
+            alternative_probability,
+            light_probabilities: weighing.light_probabilities.clone(),
+        })
+    }
+}
