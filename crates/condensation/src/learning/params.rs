@@ -57,6 +57,24 @@ impl AppearanceLearningParams {
         }
     }
 
+    /// The published likelihood: a Gaussian of the weighted distance, $`e^{-\frac{1}{2} \sum_i w_i (m_i - m_i(s))^2}`$, whose weights are one over the variances of the
+    /// features over the states; no disturbance is known. [Kasprzak & Szynkiewicz, 2.3]
+    ///
+    /// ```
+    /// use wayfix_condensation::{AppearanceLearningParams, LikelihoodTail};
+    /// let published = AppearanceLearningParams::as_published();
+    /// assert_eq!(published.likelihood_tail, LikelihoodTail::Gaussian);
+    /// assert!(published.disturbance_sigmas.to_array().iter().all(|sigma| *sigma == 0.0));
+    /// ```
+    pub fn as_published() -> Self {
+        Self {
+            disturbance_sigmas: ViewDisturbance { dx: 0.0, dy: 0.0, gain: 0.0, offset: 0.0, log_gamma: 0.0 },
+            light_changes: vec![LightChange::SAME],
+            noise_covariance: NoiseCovarianceParams { pooled_share: 1.0, min_variance_share: 1.0 },
+            likelihood_tail: LikelihoodTail::Gaussian,
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), CondensationError> {
         for sigma in self.disturbance_sigmas.to_array() {
             let valid = sigma.is_finite() && sigma >= 0.0;

@@ -23,6 +23,13 @@ pub struct ViewLocalizerParams {
     pub disturbance_drift: f64,
 }
 
+impl ViewLocalizerParams {
+    /// The published filter: nobody moves the robot, and nothing drifts.
+    pub fn as_published() -> Self {
+        Self { kidnapping_probability: 0.0, disturbance_drift: 0.0 }
+    }
+}
+
 impl Default for ViewLocalizerParams {
     /// Carried off once in a thousand steps; a disturbance that takes as many to be forgotten.
     fn default() -> Self {

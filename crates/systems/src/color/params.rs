@@ -31,6 +31,14 @@ pub struct ColorSystemParams {
     pub background_model: BackgroundColorModel,
 }
 
+impl ColorSystemParams {
+    /// Sets the localizer as published. Odometry and camera describe the robot, not the method.
+    pub fn set_published(&mut self) {
+        let LocalizerParams { odometry, camera, .. } = self.localizer;
+        self.localizer = LocalizerParams { odometry, camera, ..LocalizerParams::as_published() };
+    }
+}
+
 /// Uncertainty of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

@@ -25,6 +25,15 @@ pub struct TrackParams {
 }
 
 impl TrackParams {
+    /// The head and contour trackers as published; the box tracker is not of the paper.
+    pub fn as_published() -> Self {
+        Self {
+            head: HeadTrackerParams::as_published(),
+            contour: ContourTrackerParams::as_published(),
+            ..Self::default()
+        }
+    }
+
     /// The defaults, overridden by the values of a TOML text.
     ///
     /// # Errors

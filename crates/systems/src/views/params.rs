@@ -43,6 +43,15 @@ impl Default for ViewsParams {
 }
 
 impl ViewsParams {
+    /// The method of the paper: the light is normalized from the whole scene, and the robot is never carried off.
+    pub fn as_published() -> Self {
+        Self {
+            localizer: ViewLocalizerParams::as_published(),
+            whole_scene_appearance: AppearanceLearningParams::as_published(),
+            ..Self::default()
+        }
+    }
+
     /// The defaults, overridden by the values of a TOML text.
     ///
     /// # Errors

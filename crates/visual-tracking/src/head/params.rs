@@ -48,6 +48,11 @@ impl Default for HeadTrackerParams {
 }
 
 impl HeadTrackerParams {
+    /// The published method: colours and gradient count equally [Birchfield 1998], and a head is never lost.
+    pub fn as_published() -> Self {
+        Self { gradient_weight: 0.5, no_evidence_below: 0.0, ..Self::default() }
+    }
+
     pub(super) fn validate(&self) -> Result<(), TrackingError> {
         checked(
             "search_radius",

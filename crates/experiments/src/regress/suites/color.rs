@@ -26,6 +26,9 @@ struct Settings {
     map: PathBuf,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
+    /// The method as published, without the additions.
+    #[serde(default)]
+    as_published: bool,
     /// Number of kinds of light to learn priors for, one Gaussian each; without it the built-in priors, of two, are used.
     lights: Option<usize>,
     /// Number of halls, for experiments over many.
@@ -83,10 +86,13 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         return crate::venues::run(job.log()?);
     }
     let map = Arc::new(color::read_map(&job.options.fixtures.join(&settings.map))?);
-    let params: ColorSystemParams = match &settings.params {
+    let mut params: ColorSystemParams = match &settings.params {
         Some(file) => toml::from_str(&job.read(file)?)?,
         None => ColorSystemParams::default(),
     };
+    if settings.as_published {
+        params.set_published();
+    }
     let learned = settings.lights.map_or_else(priors::built_in, priors::learn_from_simulation)?;
     let seed = job.options.seed;
     let bank = priors::bank(&learned, &params)?;

@@ -30,6 +30,9 @@ struct Settings {
     n_frames_quick: usize,
     /// The trackers.
     methods: Vec<TrackingMethod>,
+    /// The method as published, without the additions.
+    #[serde(default)]
+    as_published: bool,
     /// True boxes of a recording, relative to the folder given by `--data`.
     truth: Option<PathBuf>,
 }
@@ -44,6 +47,12 @@ fn two() -> u64 {
 
 fn fifty() -> usize {
     50
+}
+
+impl Settings {
+    fn params(&self) -> TrackParams {
+        if self.as_published { TrackParams::as_published() } else { TrackParams::default() }
+    }
 }
 
 /// A film or a recording through its trackers.
@@ -63,7 +72,7 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
         (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);
     }
     let first = 1000 * job.options.seed;
-    films::table(&film, first..first + n_seeds, &settings.methods, &TrackParams::default())
+    films::table(&film, first..first + n_seeds, &settings.methods, &settings.params())
 }
 
 fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
@@ -73,7 +82,8 @@ fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let truth = TrueBoxes::read(&job.recording(truth)?)?;
     let method = *settings.methods.first().context("give `methods`")?;
     let rate_hz = Some(options.frame_rate_hz);
-    let setup = TrackerConfig { method, truth, rate_hz, ..TrackerConfig::default() };
+    let params = settings.params();
+    let setup = TrackerConfig { method, truth, rate_hz, params, ..TrackerConfig::default() };
     let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates_file();
     let mut estimates =

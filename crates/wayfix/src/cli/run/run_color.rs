@@ -55,6 +55,9 @@ pub(in crate::cli) struct Arguments {
     /// anywhere].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     start: Option<StartArgument>,
+    /// The localizer as published by Schulz & Fox, without the additions: no search, no relocalization, no occlusion. Noise of odometry and camera stays.
+    #[arg(long)]
+    as_published: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -95,10 +98,13 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let params = match &arguments.common.params {
+    let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
         None => ColorSystemParams::default(),
     };
+    if arguments.as_published {
+        params.set_published();
+    }
     if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);

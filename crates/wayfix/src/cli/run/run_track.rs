@@ -55,6 +55,9 @@ pub(in crate::cli) struct Arguments {
     /// Which tracker.
     #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
     method: TrackingMethod,
+    /// The head and contour trackers as published by Andrade-Cetto & Sanfeliu, without the additions.
+    #[arg(long, conflicts_with = "params")]
+    as_published: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -84,6 +87,7 @@ impl FromStr for BoxArgument {
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.common.params {
         Some(path) => read_toml(path, TrackParams::from_toml)?,
+        None if arguments.as_published => TrackParams::as_published(),
         None => TrackParams::default(),
     };
     if arguments.common.print_params {

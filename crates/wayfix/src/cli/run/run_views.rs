@@ -70,6 +70,9 @@ pub(in crate::cli) struct Arguments {
     /// Among moves that lead equally near to the goal, take the one with the largest expected information, comparing the N best places.
     #[arg(long, value_name = "N")]
     informed: Option<usize>,
+    /// The method as published by Kasprzak & Szynkiewicz, without the additions; the paper has no normalization `online`.
+    #[arg(long, conflicts_with = "params")]
+    as_published: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -103,6 +106,7 @@ impl FromStr for Shift {
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, ViewsParams::from_toml)?,
+        None if arguments.as_published => ViewsParams::as_published(),
         None => ViewsParams::default(),
     };
     if let Some(hypotheses) = arguments.informed {

@@ -3,7 +3,7 @@ use anyhow::Result;
 use super::{scenes::Scenes, settings::Settings};
 use crate::regress::PlannedJob;
 use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::views::{self, DescriptorKind, ViewSystem, ViewSystemConfig, ViewsParams};
+use wayfix_systems::views::{self, DescriptorKind, ViewSystem, ViewSystemConfig};
 
 /// The paper's features with every normalization, on one scene. Figures are named after both; pictures are those of the last.
 pub(super) fn drive(
@@ -13,7 +13,7 @@ pub(super) fn drive(
     statistics: impl Fn(&ViewSystemConfig, &ViewSystem) -> Result<Vec<Metric>>,
     beside: impl Fn(&ViewSystemConfig, Metric) -> Metric,
 ) -> Result<ReportRun> {
-    let (params, seed) = (ViewsParams::default(), job.options.seed);
+    let (params, seed) = (settings.params(), job.options.seed);
     let mut all = ReportRun {
         notes: vec!["The pictures are of the last feature and normalization.".to_owned()],
         ..ReportRun::default()

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
-use wayfix_systems::views::LightNormalization;
+use wayfix_systems::views::{LightNormalization, ViewsParams};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -30,6 +30,9 @@ pub(super) struct Settings {
     /// Normalizations of the light; each one listed is run.
     #[serde(default = "normalizations")]
     pub(super) normalization: Vec<LightNormalization>,
+    /// The method as published, without the additions.
+    #[serde(default)]
+    pub(super) as_published: bool,
     /// Drives of every feature.
     #[serde(default = "trials")]
     pub(super) trials: u64,
@@ -61,6 +64,10 @@ pub(super) enum ImagingConditionsKind {
 }
 
 impl Settings {
+    pub(super) fn params(&self) -> ViewsParams {
+        if self.as_published { ViewsParams::as_published() } else { ViewsParams::default() }
+    }
+
     pub(super) fn scene(&self) -> Result<&str> {
         self.scene.as_deref().context("give `scene`, the name of a composed one")
     }
