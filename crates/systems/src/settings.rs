@@ -13,10 +13,15 @@ macro_rules! number {
 }
 pub(crate) use number;
 
-/// Returns `defaults` overridden by the values of a TOML text.
+/// The default parameters, overridden by the values of a TOML text.
 ///
 /// # Errors
 /// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
+pub fn from_toml<T: Default + Serialize + DeserializeOwned>(text: &str) -> Result<T, toml::de::Error> {
+    over_defaults(&T::default(), text)
+}
+
+/// Returns `defaults` overridden by the values of a TOML text.
 pub(crate) fn over_defaults<T: Serialize + DeserializeOwned>(
     defaults: &T,
     text: &str,

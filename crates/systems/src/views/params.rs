@@ -4,15 +4,13 @@ use wayfix_condensation::{
     AppearanceLearningParams, DominantGrayCriterion, NavigatorParams, ViewLocalizerParams,
 };
 
-use crate::settings::over_defaults;
-
 /// Parameters of `wayfix run views`, independent of the scene.
 ///
 /// ```
-/// use wayfix_systems::views::ViewsParams;
-/// let params = ViewsParams::from_toml("[navigator]\nmax_steps = 40")?;
+/// use wayfix_systems::{settings::from_toml, views::ViewsParams};
+/// let params = from_toml::<ViewsParams>("[navigator]\nmax_steps = 40")?;
 /// assert_eq!((params.navigator.max_steps, params.navigator.n_confirmations), (40, 3)); // the rest as it was
-/// assert!(ViewsParams::from_toml("[navigator]\nmax_stesp = 40").is_err());
+/// assert!(from_toml::<ViewsParams>("[navigator]\nmax_stesp = 40").is_err());
 /// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,13 +48,5 @@ impl ViewsParams {
             whole_scene_appearance: AppearanceLearningParams::as_published(),
             ..Self::default()
         }
-    }
-
-    /// The defaults, overridden by the values of a TOML text.
-    ///
-    /// # Errors
-    /// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
-    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
-        over_defaults(&Self::default(), text)
     }
 }

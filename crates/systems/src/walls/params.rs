@@ -10,7 +10,7 @@ use wayfix_slam_ekf::{
 };
 
 use crate::{
-    settings::{number, over_defaults},
+    settings::number,
     slam::{AssociationRule, increment_numbers},
     system::VELOCITY_HOLD,
 };
@@ -18,8 +18,8 @@ use crate::{
 /// Everything that can be set for EKF-SLAM with walls.
 ///
 /// ```
-/// use wayfix_systems::walls::WallSlamParams;
-/// let params = WallSlamParams::from_toml("[sensor]\nrho_sigma = 0.05")?;
+/// use wayfix_systems::{settings::from_toml, walls::WallSlamParams};
+/// let params = from_toml::<WallSlamParams>("[sensor]\nrho_sigma = 0.05")?;
 /// assert_eq!(params.sensor.rho_sigma, 0.05);
 /// assert_eq!(params.line_extraction, WallSlamParams::default().line_extraction); // not named in the text
 /// # Ok::<(), toml::de::Error>(())
@@ -163,14 +163,6 @@ impl WallSlamParams {
     pub(super) fn mount(&self) -> Pose2<f64> {
         let [x, y, heading] = self.laser_pose.unwrap_or_default();
         Pose2::new(x, y, heading)
-    }
-
-    /// Parameters from TOML text; what it does not name keeps its default.
-    ///
-    /// # Errors
-    /// When the text is not TOML, a key is unknown or a value has the wrong type.
-    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
-        over_defaults(&Self::default(), text)
     }
 
     /// The same parameters, when each is within its range.

@@ -61,7 +61,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 /// A log of laser scans through EKF-SLAM with walls.
 fn with_walls(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let params = match &settings.params {
-        Some(file) => WallSlamParams::from_toml(&job.read(file)?)?,
+        Some(file) => wayfix_systems::settings::from_toml(&job.read(file)?)?,
         None => WallSlamParams::default(),
     };
     let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();

@@ -15,6 +15,7 @@ use super::super::{common::Common, input::read_toml, outputs::Outputs, read_prob
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
+    settings::from_toml,
     system::{Stopwatch, System},
     track::{
         self, TargetStart, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod,
@@ -86,7 +87,7 @@ impl FromStr for BoxArgument {
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.common.params {
-        Some(path) => read_toml(path, TrackParams::from_toml)?,
+        Some(path) => read_toml(path, from_toml::<TrackParams>)?,
         None if arguments.as_published => TrackParams::as_published(),
         None => TrackParams::default(),
     };

@@ -13,6 +13,7 @@ use super::super::{common::Common, input::read_toml, outputs::Outputs};
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
+    settings::from_toml,
     system::Stopwatch,
     views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams},
 };
@@ -105,7 +106,7 @@ impl FromStr for Shift {
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, ViewsParams::from_toml)?,
+        Some(path) => read_toml(path, from_toml::<ViewsParams>)?,
         None if arguments.as_published => ViewsParams::as_published(),
         None => ViewsParams::default(),
     };

@@ -4,6 +4,7 @@ use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations};
 use wayfix_systems::{
+    settings::from_toml,
     slam::AssociationRule,
     walls::{self, SavedWallMap, WallSlamParams},
 };
@@ -61,7 +62,7 @@ fn relations(path: &Path) -> Result<Vec<PoseRelation>> {
 
 fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, WallSlamParams::from_toml)?
+        Some(path) => read_toml(path, from_toml::<WallSlamParams>)?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,
         None => WallSlamParams::default(),
