@@ -162,6 +162,9 @@ fn a_file_gives_the_same_priors_and_a_spoiled_one_gives_none() {
     // serde_json reads a number back to within one unit in the last place.
     assert!((read.members()[1].covariance() - priors.members()[1].covariance()).amax() < 1e-12);
     assert_eq!(read.colors(), priors.colors());
+    let old =
+        text.replace("pixel_color_variance", "pixel_noise").replace("mean_color_variance", "mean_noise");
+    assert_eq!(serde_json::from_str::<LightingPriors>(&old).unwrap(), read, "files of before");
     let spoil = |path: &str, value: serde_json::Value| {
         let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
         *file.pointer_mut(path).unwrap_or_else(|| panic!("no {path}")) = value;

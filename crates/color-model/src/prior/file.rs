@@ -9,7 +9,9 @@ use super::{LightingPriorError, LightingPriors};
 #[serde(deny_unknown_fields)]
 pub(super) struct PriorFile {
     colors: Vec<String>,
+    #[serde(alias = "pixel_noise")] // of before, as `mean_noise`
     pixel_color_variance: [f64; 3],
+    #[serde(alias = "mean_noise")]
     mean_color_variance: [f64; 3],
     members: Vec<Member>,
 }

@@ -23,8 +23,8 @@ pub(crate) struct TopicProbe {
 pub(crate) enum Probe {
     /// Whether the first image can be read.
     Image,
-    /// Whether the robot ever moves by the poses.
-    Poses { first: Option<Pose2<f64>> },
+    /// Whether the poses have the motion: they change, or the robot stands.
+    Poses { first: Option<Pose2<f64>>, moves_by_twist: bool },
     /// Whether there is odometry among the transforms.
     Transforms,
 }
@@ -43,7 +43,7 @@ pub(super) fn topic_probes(
         images.iter().map(|image| question(image, Probe::Image)).collect();
     match motion {
         Some(odometry) if odometry.is_odometry() => {
-            topic_probes.push(question(&odometry, Probe::Poses { first: None }));
+            topic_probes.push(question(&odometry, Probe::Poses { first: None, moves_by_twist: false }));
         }
         Some(_) => {
             // Static transforms are not odometry.
@@ -64,8 +64,10 @@ impl Probe {
                 Ok(RosMessage::CompressedImage(image)) => picture(image.format, image.data).is_ok(),
                 _ => false,
             }),
-            (Self::Poses { first }, Ok(RosMessage::Odometry(odometry))) => {
+            (Self::Poses { first, moves_by_twist }, Ok(RosMessage::Odometry(odometry))) => {
                 let pose = planar(&odometry.pose).ok()?;
+                let velocities = odometry.twist.linear.iter().chain(&odometry.twist.angular);
+                *moves_by_twist |= velocities.into_iter().any(|velocity| *velocity != 0.0);
                 (*first.get_or_insert(pose) != pose).then_some(true)
             }
             (Self::Transforms, Ok(RosMessage::Transforms(transforms))) => {
@@ -75,5 +77,10 @@ impl Probe {
             }
             _ => None,
         }
+    }
+
+    /// The answer if all messages together gave none.
+    pub(crate) fn at_end(&self) -> bool {
+        matches!(self, Self::Poses { first: Some(_), moves_by_twist: false })
     }
 }

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::bag::{
-    Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, read, scan, transforms, twist,
+    Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, odometry_with, pose, read, scan, transforms, twist,
 };
 use mcap::WriteOptions;
 use wayfix_estimation_traits::{LieGroup, Pose2};
@@ -163,6 +163,17 @@ fn odometry_that_only_knows_its_velocity_is_read_as_that() {
         })
         .collect();
     assert_eq!(speeds, [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn odometry_of_a_standing_robot_is_increments_of_zero() {
+    let mut bag = Bag::new();
+    for seconds in 1..4 {
+        bag.put("/odom", "nav_msgs/Odometry", 0, odometry_with(seconds, [2.0, 0.0, 0.3], [0.0; 2]));
+    }
+    let (records, _) = bag.read();
+    assert_eq!(kinds(&records), ["odometry increment"; 2]);
+    assert!(records.iter().all(|record| record.data == RecordData::OdometryIncrement(Pose2::identity())));
 }
 
 #[test]

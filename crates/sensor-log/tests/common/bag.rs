@@ -76,12 +76,17 @@ pub(crate) fn quaternion(heading: f64) -> [f64; 4] {
 }
 
 pub(crate) fn odometry(seconds: i32, pose: [f64; 3], speed: f64) -> Encoder {
+    odometry_with(seconds, pose, [speed, 0.5])
+}
+
+/// Odometry with a speed and a turn rate.
+pub(crate) fn odometry_with(seconds: i32, pose: [f64; 3], [speed, turn]: [f64; 2]) -> Encoder {
     let mut cdr = at(seconds, "odom");
     cdr.string("base_link");
     cdr.f64s(&[pose[0], pose[1], 0.0]);
     cdr.f64s(&quaternion(pose[2]));
     cdr.f64s(&[0.0; 36]);
-    cdr.f64s(&[speed, 0.0, 0.0, 0.0, 0.0, 0.5]);
+    cdr.f64s(&[speed, 0.0, 0.0, 0.0, 0.0, turn]);
     cdr.f64s(&[0.0; 36]);
     cdr
 }
