@@ -20,9 +20,9 @@ pub use lighting::{
     SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
-    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch,
-    LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame, PixelLikelihood, PixelLikelihoodParams,
-    PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
+    CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext,
+    ImageLikelihood, JointScratch, LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame,
+    PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
     CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,

@@ -7,8 +7,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::painted::{Scene, bank, camera_pose, mount};
 use wayfix_color_model::{
-    ColorLocalizer, ColorModelError, Fix, FrameOutcome, LocalizerParams, OdometryStep, SearchParams, Start,
-    YuvImage,
+    ColorLocalizer, ColorModelError, FeatureLikelihoodParams, Fix, FrameOutcome, ImageLikelihood,
+    LocalizerParams, OdometryStep, SearchParams, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -83,6 +83,28 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
         assert!(off[0].hypot(off[1]) < 0.1 && off[2].abs() < 0.052, "seed {seed}: {off:?}");
         assert_eq!(last.fix, Fix::Tracking, "seed {seed}");
     }
+}
+
+/// The features of small, noisy images are coarse: half of the start's error is asked for, over the whole drive.
+#[test]
+fn blobs_instead_of_pixels_correct_a_rough_start() {
+    let mut scene = Scene::new();
+    let body = Pose2::new(0.5, 0.2, 0.4);
+    let (views, truth) = drive(&mut scene, body, 32, 8);
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let params = LocalizerParams { search: SearchParams { n_drawn: 0, ..params().search }, ..params() };
+    let models = (bank(), params.odometry, ImageLikelihood::Features(FeatureLikelihoodParams::default()));
+    let start = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
+    let map = scene.map.clone();
+    let mut localizer =
+        ColorLocalizer::with_models(map, scene.camera, models, &start, params, &mut rng).unwrap();
+    for (image, mount) in &views {
+        localizer.predict(&step(), &mut rng).expect("a sound step");
+        localizer.update(image, mount, &mut rng).expect("a sound frame");
+    }
+    let poses: Vec<_> = localizer.poses().collect();
+    let mean = poses.iter().map(|(pose, weight)| truth.local(pose) * *weight).sum::<Vector3<f64>>();
+    assert!(mean.xy().norm() < 0.14 && mean.z.abs() < 0.1, "{mean:?}");
 }
 
 #[test]

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     ColorModelError, JointScratch, LightingTracker, LikelihoodModel, PixelClassifier, PixelFrame,
-    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather, likelihood::JointLikelihood,
+    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather,
 };
 
 /// Images are searched at half the resolution.
@@ -317,7 +317,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let scratch = || Scratch {
             projector: MapRenderer::new(Arc::clone(self.scene.map), self.scene.camera),
-            joint: JointScratch(JointLikelihood::new()),
+            joint: JointScratch::new(),
             frames: vec![vec![PixelSums::default(); self.scene.map.colors().len()]; self.frames.len()],
             values: Vec::new(),
         };
