@@ -18,8 +18,8 @@ pub use archive::{
 };
 pub use error::AppearanceMapError;
 pub use fusion::{
-    FusionParams, GaussianFusionRule, MixtureWeighting, PoseLikelihood, PoseSource, PositionFix,
-    UniformComponent, combine, fuse,
+    FusionParams, GaussianFusionRule, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesisSource,
+    PositionFix, UniformComponent, combine, fuse,
 };
 pub use localizer::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,

@@ -15,7 +15,7 @@ use wayfix_gaussian_core::Gaussian;
 
 /// A tenth of the usual effort, for images of a quarter of the size.
 fn params() -> LocalizerParams {
-    let search = SearchParams { n_frames: 4, n_drawn: 600, n_places: 40, ..SearchParams::default() };
+    let search = SearchParams { n_frames: 4, n_drawn: 600, n_refined_places: 40, ..SearchParams::default() };
     LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
 }
 
@@ -74,7 +74,7 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
         // Half of the default effort: coarser, the first search may miss the peak.
-        let search = SearchParams { n_drawn: 2000, n_places: 80, ..params().search };
+        let search = SearchParams { n_drawn: 2000, n_refined_places: 80, ..params().search };
         let params = LocalizerParams { max_particles: 500, search, ..params() };
         let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
         let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
@@ -179,7 +179,7 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
         refused(&|params| params.tempering_min_ess_share = value);
     }
     refused(&|params| params.max_particles = 0);
-    refused(&|params| params.search.n_places = 0);
+    refused(&|params| params.search.n_refined_places = 0);
 }
 
 #[test]

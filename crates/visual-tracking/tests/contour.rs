@@ -215,7 +215,7 @@ fn dynamics_of_ones_own_are_used() {
     let params = ContourTrackerParams {
         background_odds: 0.0,
         previous_colors_weight: 0.0,
-        anchored_share: 0.0,
+        share_from_last_measurement: 0.0,
         ..ContourTrackerParams::default()
     };
     let mut tracker = on_disk(params).with_dynamics(still);

@@ -55,7 +55,7 @@ pub struct SearchParams {
     /// Number of trajectories drawn; 0 never searches. Default 4000: one for each 0.3 m × 0.3 m × 0.3 rad of a field of 4 × 3 m, about.
     pub n_drawn: usize,
     /// Number of places that are refined at first; it is halved three times. Default 100.
-    pub n_places: usize,
+    pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_moves: u32,
     /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
@@ -64,7 +64,7 @@ pub struct SearchParams {
 
 impl Default for SearchParams {
     fn default() -> Self {
-        Self { n_frames: 16, n_drawn: 4000, n_places: 100, n_moves: 10, interval: 1.0 }
+        Self { n_frames: 16, n_drawn: 4000, n_refined_places: 100, n_moves: 10, interval: 1.0 }
     }
 }
 
@@ -118,7 +118,7 @@ impl LocalizerParams {
             check(what, value, 0.0, f64::MAX)?;
         }
         check("number of frames", self.search.n_frames as f64, 1.0, f64::MAX)?;
-        check("number of places", self.search.n_places as f64, 1.0, f64::MAX)?;
+        check("number of places", self.search.n_refined_places as f64, 1.0, f64::MAX)?;
         check("number of moves", f64::from(self.search.n_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
         check(

@@ -135,7 +135,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut candidates =
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?;
         candidates.extend(known.map(|place| self.candidate(&place, self.buffered.len(), Some(place))));
-        retain_places(&mut candidates, params.n_places);
+        retain_places(&mut candidates, params.n_refined_places);
         for round in 0..=N_HALVINGS {
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.weigh(scratch, candidate, Effort::Full);
@@ -143,7 +143,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                     self.refine(scratch, candidate, rng);
                 }
             })?;
-            retain_places(&mut candidates, params.n_places >> (round + 1).min(N_HALVINGS));
+            retain_places(&mut candidates, params.n_refined_places >> (round + 1).min(N_HALVINGS));
         }
         let n_particles = self.params.max_particles.div_ceil(candidates.len().max(1));
         candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()

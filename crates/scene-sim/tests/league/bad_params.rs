@@ -68,7 +68,7 @@ fn robots() {
             BodySwayParams { roll_rad: bad, ..default.sway },
             BodySwayParams { pitch_rad: bad, ..default.sway },
             BodySwayParams { height_m: bad, ..default.sway },
-            BodySwayParams { tilt_error_rad: bad, ..default.sway },
+            BodySwayParams { tilt_error_sigma_rad: bad, ..default.sway },
         ];
         let heads = [
             RobotHeadParams { speed_radps: bad, ..default.head },
@@ -77,7 +77,7 @@ fn robots() {
             RobotHeadParams { downward_gaze_share: bad, ..default.head },
             RobotHeadParams { angle_resolution_rad: bad, ..default.head },
             RobotHeadParams { lag_s: bad, ..default.head },
-            RobotHeadParams { bias_rad: bad, ..default.head },
+            RobotHeadParams { angle_bias_sigma_rad: bad, ..default.head },
         ];
         let odometries = [
             GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },

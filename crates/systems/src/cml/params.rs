@@ -8,8 +8,7 @@ use crate::system::VELOCITY_HOLD;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
-    /// Time after its stamp for which a velocity holds, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_hold: f64,
     /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,

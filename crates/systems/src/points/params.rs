@@ -84,8 +84,7 @@ pub struct RobotTimingParams {
     pub command_delay: f64,
     /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
     pub turn_command_time_loss: f64,
-    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_hold: f64,
     /// Whether the sensor gives depth along its axis instead of distance.
     pub range_is_depth: bool,
@@ -112,8 +111,7 @@ impl Default for RobotTimingParams {
 pub enum RobotProfile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
     Generic,
-    /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
-    /// for every detection.
+    /// The simulated range-bearing logs for comparing programs: 0.02 m, 0.005 rad per increment; 0.05 m, 0.01 rad per detection.
     RangeBearing,
     /// The truck of the Victoria Park set: a car with a laser that finds tree trunks.
     VictoriaPark,
@@ -265,8 +263,7 @@ impl PointSlamParams {
     /// Parameters from TOML text; what it does not name keeps the default of the profile it names, else of `profile`.
     ///
     /// # Errors
-    /// When the text is not TOML, a key is unknown or a value has the wrong type. Ranges are checked by
-    /// [`validated`](Self::validated).
+    /// When the text is not TOML, a key is unknown or a value has the wrong type. [`Self::validated`] checks ranges.
     pub fn from_toml(text: &str, profile: RobotProfile) -> Result<Self, toml::de::Error> {
         #[derive(Deserialize)]
         struct Named {

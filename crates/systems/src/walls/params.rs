@@ -54,8 +54,7 @@ pub struct WallSlamParams {
     pub sensor: WallSensor,
     /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
     pub heading_drift_sigma: f64,
-    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_hold: f64,
     /// By how much odometry is stamped later than scans that show the same, s; negative where it is stamped earlier.
     pub odometry_delay: f64,

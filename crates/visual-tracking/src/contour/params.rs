@@ -38,7 +38,7 @@ pub struct ContourTrackerParams {
     pub n_samples: usize,
     /// Share of the samples that start from the colours found in the last picture and not from the samples of before; 0 is plain
     /// CONDENSATION. Default 0.5.
-    pub anchored_share: f64,
+    pub share_from_last_measurement: f64,
     /// Share of the velocity that the colour state keeps, from 0 to 1. Default 0.5.
     pub velocity_retention: f64,
     /// Noise of the colour state per picture: centroid (3), axis deviations (3), in units of the colour space, and angles (2) in radians.
@@ -87,7 +87,7 @@ impl Default for ContourTrackerParams {
             color_space: ColorSpace::Opponent,
             color_bins: [32; 3],
             n_samples: 100,
-            anchored_share: 0.5,
+            share_from_last_measurement: 0.5,
             velocity_retention: 0.5,
             color_state_noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
             background_odds: 1.0,
@@ -118,7 +118,7 @@ impl ContourTrackerParams {
             previous_colors_weight: 0.0,
             area_extrapolation: 1.0,
             mean_area_weight: 0.0,
-            anchored_share: 0.0,
+            share_from_last_measurement: 0.0,
             color_bins: [16; 3],
             ..Self::default()
         }
@@ -134,7 +134,7 @@ impl ContourTrackerParams {
         count("max_colors", self.max_colors, 1_000_000)?;
         count("n_search_samples", self.n_search_samples, 1_000_000)?;
         for (what, value) in [
-            ("anchored_share", self.anchored_share),
+            ("share_from_last_measurement", self.share_from_last_measurement),
             ("previous_colors_weight", self.previous_colors_weight),
             ("mean_area_weight", self.mean_area_weight),
             ("lost_below", self.lost_below),

@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 150] = [
+const RENAMED: [(&str, &str); 152] = [
     ("accept", "gate_nis"),
     ("acquisition", "search"),
     ("active", "forgetting_rate"),
@@ -10,6 +10,7 @@ const RENAMED: [(&str, &str); 150] = [
     ("adaptation", "color_adaptation_rate"),
     ("adapts", "adapts_colors"),
     ("alike_share", "color_agreement_share"),
+    ("anchored_share", "share_from_last_measurement"),
     ("area_gain", "area_extrapolation"),
     ("area_memory", "mean_area_weight"),
     ("background", "background_model"),
@@ -92,6 +93,7 @@ const RENAMED: [(&str, &str); 150] = [
     ("motion_width", "motion_sigma"),
     ("moved_per_km", "kidnappings_per_km"),
     ("mu", "quality_weights"),
+    ("n_places", "n_refined_places"),
     ("n_scales", "n_scale_hypotheses"),
     ("n_searches", "n_search_places"),
     ("n_sightings", "n_detections"),

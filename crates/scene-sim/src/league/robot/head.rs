@@ -43,7 +43,7 @@ impl Head {
             target: Target::Angles(Vector2::zeros()),
             left_s: 0.0,
             n_looks: Vec::new(),
-            biases: [(); 3].map(|()| params.bias_rad * normal(rng)),
+            biases: [(); 3].map(|()| params.angle_bias_sigma_rad * normal(rng)),
         }
     }
 

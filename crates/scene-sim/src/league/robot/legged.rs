@@ -120,7 +120,7 @@ impl LeggedRobot {
     fn wobble(&mut self, streams: &mut RandomStreams) {
         let rng = streams.of(RandomStreamPurpose::Joints);
         for (slow, process) in self.slow.iter_mut().zip(&mut self.unsteady) {
-            *slow = self.sway.tilt_error_rad * process.advance(STEP_S, rng);
+            *slow = self.sway.tilt_error_sigma_rad * process.advance(STEP_S, rng);
         }
     }
 }
