@@ -22,7 +22,7 @@ pub use fusion::{
     PositionFix, UniformComponent, combine, fuse,
 };
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, PoseHypothesisRule, Recovery, Start, UpdateOutcome,
 };
 pub use model::{
     AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, MapUpdate, PlaceComponent,

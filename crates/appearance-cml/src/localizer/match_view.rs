@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_gaussian_core::Gaussian;
 
 use super::belief::Belief;
-use super::{AppearanceLocalizer, LocalizerParams, Observation};
+use super::{AppearanceLocalizer, LocalizerParams, PoseHypothesisRule};
 use crate::model::{GROUP_SIZE, N_FAR};
 use crate::{
     AppearanceMap, AppearanceMapError, Descriptor, GaussianMixtureLikelihood, PoseHypothesis,
@@ -47,13 +47,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         belief: &Belief,
         params: &LocalizerParams,
     ) -> Result<ViewMatch, AppearanceMapError> {
-        let (matches, peaks) = match params.observation {
-            Observation::Superposition => {
+        let (matches, peaks) = match params.pose_hypothesis_rule {
+            PoseHypothesisRule::Superposition => {
                 let matches = self.all_place_matches(view, &params.map);
                 let peaks = superpose(&matches);
                 (matches, peaks)
             }
-            Observation::Interpolation => {
+            PoseHypothesisRule::Interpolation => {
                 let components = belief.components();
                 let reaches_far = components.iter().any(|component| {
                     self.search_radius(component, &params.map, params.fusion.gate)

@@ -131,7 +131,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         rng: &mut R,
     ) -> Result<Vec<Found<T>>, ColorModelError> {
         let params = &self.params.search;
-        let drawn = (0..params.n_drawn).map(|n| self.drawn(n, rng)).collect();
+        let drawn = (0..params.n_sampled_trajectories).map(|n| self.drawn(n, rng)).collect();
         let mut candidates =
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?;
         candidates.extend(known.map(|place| self.candidate(&place, self.buffered.len(), Some(place))));

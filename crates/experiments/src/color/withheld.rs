@@ -89,7 +89,7 @@ fn rates(
         .par_iter()
         .map(|&(color, kind)| {
             let mut params = params.clone();
-            params.localizer.withheld = Some(color);
+            params.localizer.withheld_color = Some(color);
             let bank = priors::bank(&kinds[kind], &params)?;
             let run = run(records, Arc::clone(map), bank, &params, None, seed, |_| {})?;
             let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());

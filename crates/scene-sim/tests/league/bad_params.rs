@@ -65,9 +65,9 @@ fn robots() {
         ];
         let sways = [
             BodySwayParams { stride_s: bad, ..default.sway },
-            BodySwayParams { roll_rad: bad, ..default.sway },
-            BodySwayParams { pitch_rad: bad, ..default.sway },
-            BodySwayParams { height_m: bad, ..default.sway },
+            BodySwayParams { roll_amplitude_rad: bad, ..default.sway },
+            BodySwayParams { pitch_amplitude_rad: bad, ..default.sway },
+            BodySwayParams { height_amplitude_m: bad, ..default.sway },
             BodySwayParams { tilt_error_sigma_rad: bad, ..default.sway },
         ];
         let heads = [
@@ -76,7 +76,7 @@ fn robots() {
             RobotHeadParams { mean_gaze_s: bad, ..default.head },
             RobotHeadParams { downward_gaze_share: bad, ..default.head },
             RobotHeadParams { angle_resolution_rad: bad, ..default.head },
-            RobotHeadParams { lag_s: bad, ..default.head },
+            RobotHeadParams { angle_latency_s: bad, ..default.head },
             RobotHeadParams { angle_bias_sigma_rad: bad, ..default.head },
         ];
         let odometries = [

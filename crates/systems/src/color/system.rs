@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_color_model::{
-    ColorDensity, ColorLocalizer, ColorLookUpTable, Fix, ImageLikelihood, LightingBank, OdometryNoise,
-    OdometryStep, PixelClassifier, Start, YuvImage,
+    ColorDensity, ColorLocalizer, ColorLookUpTable, ImageLikelihood, LightingBank, LocalizationStatus,
+    OdometryNoise, OdometryStep, PixelClassifier, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -57,7 +57,7 @@ pub struct ColorFrameResult {
     /// The pose estimate, with covariance in its body frame.
     pub pose: Gaussian<Pose2<f64>>,
     /// Quality of the estimate.
-    pub fix: Fix,
+    pub status: LocalizationStatus,
     /// Dead-reckoned pose; `None` without a known start.
     pub odometry: Option<Pose2<f64>>,
     /// Effective number of particles.
@@ -182,17 +182,17 @@ impl ColorSystem {
         let outcome = self.localize(stamp, info, &mount, &image).map_err(|error| error.to_string())?;
         let step = stopwatch.elapsed();
 
-        self.events.count(match outcome.fix {
-            Fix::Tracking => "tracking",
-            Fix::Ambiguous => "ambiguous",
-            Fix::Lost => "lost",
+        self.events.count(match outcome.status {
+            LocalizationStatus::Tracking => "tracking",
+            LocalizationStatus::Ambiguous => "ambiguous",
+            LocalizationStatus::Lost => "lost",
         });
 
         let labelled = self.labelled(stamp, &image);
         self.frames.push(ColorFrameResult {
             stamp,
             pose: outcome.estimate.pose,
-            fix: outcome.fix,
+            status: outcome.status,
             odometry: self.odometry,
             effective_particles: outcome.effective_particles,
             n_particles: outcome.n_particles,

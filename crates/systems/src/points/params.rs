@@ -8,7 +8,7 @@ use wayfix_slam_ekf::{
     SlamParams, VelocityMotion,
 };
 
-use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
+use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_TIMEOUT};
 
 /// Everything that can be set for EKF-SLAM on a log.
 ///
@@ -85,7 +85,7 @@ pub struct RobotTimingParams {
     /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
     pub turn_command_time_loss: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
-    pub velocity_hold: f64,
+    pub velocity_timeout: f64,
     /// Whether the sensor gives depth along its axis instead of distance.
     pub range_is_depth: bool,
     /// Standard deviation of the logarithm of the sensor's range scale, which is estimated; 0 when the scale is exact.
@@ -98,7 +98,7 @@ impl Default for RobotTimingParams {
             sensor_latency: 0.0,
             command_delay: 0.0,
             turn_command_time_loss: 0.0,
-            velocity_hold: VELOCITY_HOLD,
+            velocity_timeout: VELOCITY_TIMEOUT,
             range_is_depth: false,
             range_scale_sigma: 0.0,
         }
@@ -150,7 +150,7 @@ impl PointSlamParams {
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 3,
+                    min_detections: 3,
                     max_missed: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
@@ -201,7 +201,7 @@ impl PointSlamParams {
                     ..JointCompatibilityParams::default()
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 8,
+                    min_detections: 8,
                     max_missed: Some(5),
                     min_detection_rate: 0.4,
                     ..LandmarkConfirmationParams::default()
@@ -215,7 +215,7 @@ impl PointSlamParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
                     turn_command_time_loss: 0.04,
-                    velocity_hold: VELOCITY_HOLD,
+                    velocity_timeout: VELOCITY_TIMEOUT,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,
                 },
@@ -250,7 +250,7 @@ impl PointSlamParams {
                     ..JointCompatibilityParams::default()
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 8,
+                    min_detections: 8,
                     max_missed: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
@@ -308,7 +308,7 @@ mod tests {
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
             ("sensor = 3", "`sensor`"),
             ("[filter]\noutlier_rule = 'ignore'", "`filter.outlier_rule`"),
-            ("[filter.confirmation]\nn_detections = -1", "`filter.confirmation.n_detections`"),
+            ("[filter.confirmation]\nmin_detections = -1", "`filter.confirmation.min_detections`"),
             ("[sensor", "line 1"),
         ] {
             assert!(error(text).contains(named), "{text}: {}", error(text));

@@ -81,7 +81,7 @@ impl Head {
 
     /// The rotation according to the joint angles.
     pub(super) fn reported_rotation(&self) -> UnitQuaternion<f64> {
-        let old = self.angles - self.rates * self.params.lag_s;
+        let old = self.angles - self.rates * self.params.angle_latency_s;
         let quantum = self.params.angle_resolution_rad;
         let said = old.map(|angle| if quantum > 0.0 { (angle / quantum).round() * quantum } else { angle });
         space::yaw(said.x) * space::pitch(said.y)
