@@ -18,11 +18,11 @@ pub use archive::{
 };
 pub use error::AppearanceMapError;
 pub use fusion::{
-    FusionParams, GaussianFusionRule, MixtureWeighting, PoseLikelihood, PoseSource, PositionFix,
-    UniformComponent, combine, fuse,
+    FusionParams, GaussianFusionRule, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesisSource,
+    PositionFix, UniformComponent, combine, fuse,
 };
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Observation, Recovery, Start, UpdateOutcome,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, PoseHypothesisRule, Recovery, Start, UpdateOutcome,
 };
 pub use model::{
     AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, MapUpdate, PlaceComponent,

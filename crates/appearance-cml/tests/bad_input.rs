@@ -7,7 +7,8 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, AppearanceMapError, LocalizerParams, PoseHypothesis, PoseSource, PositionFix, Start,
+    AppearanceLocalizer, AppearanceMapError, LocalizerParams, PoseHypothesis, PoseHypothesisSource,
+    PositionFix, Start,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
@@ -16,7 +17,7 @@ type Localizer = AppearanceLocalizer<FieldView>;
 
 struct Weightless;
 
-impl PoseSource for Weightless {
+impl PoseHypothesisSource for Weightless {
     fn hypotheses(
         &self,
         _: Option<&GaussianMixture<Pose2<f64>>>,
@@ -27,7 +28,7 @@ impl PoseSource for Weightless {
 
 struct Singular;
 
-impl PoseSource for Singular {
+impl PoseHypothesisSource for Singular {
     fn hypotheses(
         &self,
         _: Option<&GaussianMixture<Pose2<f64>>>,
@@ -71,7 +72,7 @@ fn sources_that_fail_change_nothing() {
     let flat = PositionFix { position: Vector2::zeros(), covariance: Matrix2::zeros(), weight: 0.5 };
     let nowhere =
         PositionFix { position: Vector2::repeat(f64::NAN), covariance: Matrix2::identity(), weight: 0.5 };
-    let sources: [&dyn PoseSource; 4] = [&flat, &nowhere, &Weightless, &Singular];
+    let sources: [&dyn PoseHypothesisSource; 4] = [&flat, &nowhere, &Weightless, &Singular];
     for bad in sources {
         assert!(localizer.update_with(field.view(&here, &mut rng), &[bad]).is_err());
     }

@@ -155,7 +155,7 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { smoothing_sigma: f64::NAN, ..good }, "smoothing_sigma"),
         (PanoramaParams { smoothing_sigma: -1.0, ..good }, "smoothing_sigma"),
         (PanoramaParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
-        (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
+        (PanoramaParams { max_saturated_share: -0.1, ..good }, "max_saturated_share"),
     ] {
         let refused = PanoramaFeatures::new(params, COLUMNS, ROWS).unwrap_err();
         assert!(matches!(refused, AppearanceMapError::Parameter { what, .. } if what == named), "{refused}");

@@ -20,13 +20,13 @@ pub use lighting::{
     SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
-    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch,
-    LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame, PixelLikelihood, PixelLikelihoodParams,
-    PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
+    CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext,
+    ImageLikelihood, JointScratch, LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame,
+    PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
-    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
-    OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
+    CameraLocation, CameraNoise, CameraPoseError, ColorLocalizer, FrameOutcome, LocalizationStatus,
+    LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
 };
 pub use prior::{
     KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,

@@ -7,15 +7,20 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::painted::{Scene, bank, camera_pose, mount};
 use wayfix_color_model::{
-    ColorLocalizer, ColorModelError, Fix, FrameOutcome, LocalizerParams, OdometryStep, SearchParams, Start,
-    YuvImage,
+    ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, ImageLikelihood,
+    LocalizationStatus, LocalizerParams, OdometryStep, SearchParams, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 
 /// A tenth of the usual effort, for images of a quarter of the size.
 fn params() -> LocalizerParams {
-    let search = SearchParams { n_frames: 4, n_drawn: 600, n_places: 40, ..SearchParams::default() };
+    let search = SearchParams {
+        n_frames: 4,
+        n_sampled_trajectories: 600,
+        n_refined_places: 40,
+        ..SearchParams::default()
+    };
     LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
 }
 
@@ -74,15 +79,38 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
         // Half of the default effort: coarser, the first search may miss the peak.
-        let search = SearchParams { n_drawn: 2000, n_places: 80, ..params().search };
+        let search = SearchParams { n_sampled_trajectories: 2000, n_refined_places: 80, ..params().search };
         let params = LocalizerParams { max_particles: 500, search, ..params() };
         let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
         let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
         let off = truth.local(last.estimate.pose.mean());
         // What the system promises of position and heading; the start was 0.28 m and 11° off.
         assert!(off[0].hypot(off[1]) < 0.1 && off[2].abs() < 0.052, "seed {seed}: {off:?}");
-        assert_eq!(last.fix, Fix::Tracking, "seed {seed}");
+        assert_eq!(last.status, LocalizationStatus::Tracking, "seed {seed}");
     }
+}
+
+/// The features of small, noisy images are coarse: half of the start's error is asked for, over the whole drive.
+#[test]
+fn blobs_instead_of_pixels_correct_a_rough_start() {
+    let mut scene = Scene::new();
+    let body = Pose2::new(0.5, 0.2, 0.4);
+    let (views, truth) = drive(&mut scene, body, 32, 8);
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let params =
+        LocalizerParams { search: SearchParams { n_sampled_trajectories: 0, ..params().search }, ..params() };
+    let models = (bank(), params.odometry, ImageLikelihood::Features(FeatureLikelihoodParams::default()));
+    let start = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
+    let map = scene.map.clone();
+    let mut localizer =
+        ColorLocalizer::with_models(map, scene.camera, models, &start, params, &mut rng).unwrap();
+    for (image, mount) in &views {
+        localizer.predict(&step(), &mut rng).expect("a sound step");
+        localizer.update(image, mount, &mut rng).expect("a sound frame");
+    }
+    let poses: Vec<_> = localizer.poses().collect();
+    let mean = poses.iter().map(|(pose, weight)| truth.local(pose) * *weight).sum::<Vector3<f64>>();
+    assert!(mean.xy().norm() < 0.14 && mean.z.abs() < 0.1, "{mean:?}");
 }
 
 #[test]
@@ -132,7 +160,8 @@ fn robot_that_sees_nothing_of_the_map_is_not_tracking() {
         let outcomes = follow(&mut localizer, &views, &mut rng);
         let sigma = |outcome: &FrameOutcome| outcome.estimate.position_sigma();
         assert!(outcomes.iter().all(|outcome| sigma(outcome).is_finite()), "{name}");
-        let n_sure = outcomes[20..].iter().filter(|outcome| outcome.fix == Fix::Tracking).count();
+        let n_sure =
+            outcomes[20..].iter().filter(|outcome| outcome.status == LocalizationStatus::Tracking).count();
         assert_eq!(n_sure, 0, "{name}: {:?}", outcomes.last().map(|outcome| outcome.fit));
     }
 }
@@ -149,15 +178,15 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
     };
     for value in [f64::NAN, -1.0] {
         refused(&|params| params.pixels.brightness_variation = value);
-        refused(&|params| params.pixels.independent_pixels = value);
-        refused(&|params| params.odometry.slip = value);
-        refused(&|params| params.camera.rotation = value);
+        refused(&|params| params.pixels.n_effective_pixels = value);
+        refused(&|params| params.odometry.relative_sigma = value);
+        refused(&|params| params.camera.rotation_sigma = value);
         refused(&|params| params.search.interval = value);
         refused(&|params| params.occlusion.mean_time_hidden = value);
         refused(&|params| params.tempering_min_ess_share = value);
     }
     refused(&|params| params.max_particles = 0);
-    refused(&|params| params.search.n_places = 0);
+    refused(&|params| params.search.n_refined_places = 0);
 }
 
 #[test]

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, DescriptorTable, GlobalDescriptor, GridMove, LightChange,
-    MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, PositionGrid,
-    RgbImage, SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, shifted,
+    AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace, GlobalDescriptor,
+    GridMove, LightChange, MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator,
+    NavigatorParams, PositionGrid, RgbImage, SceneViews, ViewGrid, ViewLocalizer, ViewLocalizerParams,
+    shifted,
 };
 
 /// The robot as it really is: at a place it does not know, before a scene darker than the one it learned.

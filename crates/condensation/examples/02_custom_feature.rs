@@ -5,9 +5,9 @@
 use std::sync::Arc;
 
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, GlobalDescriptor, GridMove, JoinedDescriptor,
-    MeanVarDescriptor, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateSpace, View, ViewGrid,
-    ViewLocalizer, ViewLocalizerParams, shifted,
+    AppearanceLearningParams, AppearanceModel, DiscreteStateSpace, GlobalDescriptor, GridMove,
+    JoinedDescriptor, MeanVarDescriptor, PositionGrid, RgbImage, SceneViews, SlipProbabilities, View,
+    ViewGrid, ViewLocalizer, ViewLocalizerParams, shifted,
 };
 
 /// Mean absolute difference of grey values between neighbours, to the right and down.

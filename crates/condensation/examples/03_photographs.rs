@@ -10,10 +10,10 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
-    GlobalDescriptor, GridMove, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
-    NavigationOutcome, Navigator, NavigatorParams, PositionGrid, RgbImage, SceneViews, StateSpace, ViewGrid,
-    ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace,
+    Fft6Descriptor, GlobalDescriptor, GridMove, Hist6Descriptor, LightChange, MeanVarDescriptor,
+    NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, PositionGrid, RgbImage, SceneViews,
+    ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
 };
 
 const RUNS: u64 = 100;

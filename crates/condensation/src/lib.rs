@@ -2,7 +2,7 @@
 //!
 //! | part | what is in it |
 //! | --- | --- |
-//! | discrete filter | [`DiscreteFilter`] over any [`StateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
+//! | discrete filter | [`DiscreteFilter`] over any [`DiscreteStateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
 //! | features | [`GlobalDescriptor`]: [`MeanVarDescriptor`], [`Fft6Descriptor`], [`Hist6Descriptor`], [`JoinedDescriptor`], your own; all views of a scene at once |
 //! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteTraverse`]; [`MoveCounts`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceLearningParams::online`] |
@@ -19,9 +19,9 @@ mod navigation;
 mod normalization;
 
 pub use discrete::{
-    DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid, LatticeAxis, Maneuver,
-    MeasurementEvidence, MeasurementOutcome, MostProbableState, PlaceGraph, PlaceGraphMove, PositionGrid,
-    SlipProbabilities, SparseTransition, StateLattice, StateSpace, TransitionModel,
+    DenseTransition, DiffusionKernel, DiscreteFilter, DiscreteStateSpace, GridMove, HeadingGrid, LatticeAxis,
+    Maneuver, MeasurementEvidence, MeasurementOutcome, MostProbableState, PlaceGraph, PlaceGraphMove,
+    PositionGrid, SlipProbabilities, SparseTransition, StateLattice, TransitionModel,
 };
 pub use error::CondensationError;
 pub use features::{

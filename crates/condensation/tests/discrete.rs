@@ -4,8 +4,8 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid,
-    MeasurementOutcome, PlaceGraph, PositionGrid, SlipProbabilities, StateLattice, StateSpace,
+    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, DiscreteStateSpace, GridMove,
+    HeadingGrid, MeasurementOutcome, PlaceGraph, PositionGrid, SlipProbabilities, StateLattice,
     TransitionModel,
 };
 use wayfix_integrity::CusumTest;

@@ -4,9 +4,9 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, DescriptorTable, DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor,
-    Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, RgbImage, StateSpace, View, ViewGrid, grey, mapped,
-    shifted,
+    CondensationError, DescriptorTable, DiscreteStateSpace, DominantGrayCriterion, Fft6Descriptor,
+    GlobalDescriptor, Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, RgbImage, View, ViewGrid, grey,
+    mapped, shifted,
 };
 
 /// A feature without what it knows of neighbouring views.

@@ -37,7 +37,7 @@ fn discrete_filter_obeys_the_laws_of_filters() {
 #[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    use wayfix_condensation::{DiffusionKernel, StateSpace};
+    use wayfix_condensation::{DiffusionKernel, DiscreteStateSpace};
     let grid = PositionGrid::new(401, 307).unwrap();
     let go = SlipProbabilities { stay_probability: 0.1, other_action_probability: 0.2 }
         .transition(&grid, GridMove { dx: 1, dy: -1 })

@@ -6,9 +6,9 @@ mod common;
 
 use common::scene;
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, CondensationError, DescriptorTable, GlobalDescriptor,
-    GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, PictureViews, PositionGrid,
-    RgbImage, SceneViews, StateSpace, TransitionModel, View, ViewDisturbance, ViewGrid, shifted,
+    AppearanceLearningParams, AppearanceModel, CondensationError, DescriptorTable, DiscreteStateSpace,
+    GlobalDescriptor, GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, PictureViews,
+    PositionGrid, RgbImage, SceneViews, TransitionModel, View, ViewDisturbance, ViewGrid, shifted,
 };
 
 /// SciPy: `chi2.sf(4, 2)`; each component is one sigma of noise times sqrt(2) away.

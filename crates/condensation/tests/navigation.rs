@@ -10,10 +10,10 @@ use common::{Drive, scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
-    GlobalDescriptor, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace,
+    Fft6Descriptor, GlobalDescriptor, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
     NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
-    SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped, shifted,
+    SceneViews, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped, shifted,
 };
 
 struct Trial {

@@ -6,7 +6,7 @@ mod common;
 use std::fs;
 
 use common::experiments;
-use wayfix_condensation::{RgbImage, StateSpace, ViewGrid};
+use wayfix_condensation::{DiscreteStateSpace, RgbImage, ViewGrid};
 use wayfix_evaluation::report::{Metric, Report, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 use wayfix_systems::views::{
@@ -116,9 +116,17 @@ fn regress() -> Vec<ReportRun> {
 fn tables_need_no_files_and_are_the_same_every_time() {
     let (first, again) = (regress(), regress());
     assert_eq!(first[0].metrics, again[0].metrics);
-    let successes =
-        first[0].metrics.iter().find(|metric| metric.name == "hist6_whole_scene_successes").unwrap();
+    let successes = first[0]
+        .metrics
+        .iter()
+        .find(|metric| metric.name == "dominant_grays_scene_normalized_successes")
+        .unwrap();
     assert_eq!(successes.paper, Some(51.0), "Table 3");
-    assert!(first[0].metrics.iter().any(|metric| metric.name == "fft6_whole_scene_p_value_same_state_mean"));
+    assert!(
+        first[0]
+            .metrics
+            .iter()
+            .any(|metric| metric.name == "fourier6_scene_normalized_p_value_same_state_mean")
+    );
     assert!(first[1].error.as_ref().is_some_and(|error| error.contains("attic")), "{:?}", first[1].error);
 }

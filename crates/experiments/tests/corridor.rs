@@ -38,7 +38,7 @@ fn a_corridor_that_did_not_change_is_found_again() {
     let run = corridor::run(folder.path()).unwrap();
     assert_eq!((run.events["place"], run.events["frame"]), (50, 50));
     // The features of a frame are exactly those of its place, and places more than two apart look different.
-    for feature in ["mean_std", "fft6", "hist6", "joined"] {
+    for feature in ["mean_std", "fourier6", "dominant_grays", "joined"] {
         assert_eq!(metric(&run, &format!("{feature}_share_single_frame")), 1.0, "{feature}");
     }
     assert_eq!(metric(&run, "joined_share"), 1.0);

@@ -101,7 +101,8 @@ fn people_and_the_light_do_not_disturb_where_the_robot_drives() {
     let poses = |params| {
         tour(&building, params, 20.0, 1).iter().map(|step| (step.pose, step.odometry)).collect::<Vec<_>>()
     };
-    let ambient_light = AmbientLightParams { switching_s: Some(1.0), ..AmbientLightParams::default() };
+    let ambient_light =
+        AmbientLightParams { mean_switching_interval_s: Some(1.0), ..AmbientLightParams::default() };
     assert_eq!(
         poses(IndoorParams { n_people: 9, ambient_light, ..IndoorParams::default() }),
         poses(IndoorParams::default())
@@ -175,9 +176,12 @@ fn rearranging_nothing_changes_nothing() {
 fn switching_changes_the_lab_and_leaves_the_default_alone() {
     let building = Laboratory::draw(&mut rng()).building();
     let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorParams::default().drive };
-    let change = |switching_s| {
-        let ambient_light =
-            AmbientLightParams { switching_s, daylight_sigma: 0.0, ..AmbientLightParams::default() };
+    let change = |mean_switching_interval_s| {
+        let ambient_light = AmbientLightParams {
+            mean_switching_interval_s,
+            daylight_sigma: 0.0,
+            ..AmbientLightParams::default()
+        };
         let params = IndoorParams { drive: creeping, ambient_light, ..IndoorParams::default() };
         let route = building.aisles().tour(1.0, &mut rng()).expect("there are aisles");
         let drive = IndoorDrive::new(&building, route, params, RandomStreams::new(rng())).expect("sound");
@@ -253,7 +257,10 @@ fn numbers_without_a_meaning_are_refused() {
         IndoorParams { view_period_ms: 0, ..params },
         IndoorParams { n_people: 1 << 20, ..params },
         IndoorParams {
-            ambient_light: AmbientLightParams { switching_s: Some(0.0), ..AmbientLightParams::default() },
+            ambient_light: AmbientLightParams {
+                mean_switching_interval_s: Some(0.0),
+                ..AmbientLightParams::default()
+            },
             ..params
         },
     ] {

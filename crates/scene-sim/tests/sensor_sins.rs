@@ -93,7 +93,7 @@ fn bearings_stay_wrapped() {
 #[test]
 fn drift_has_stated_size_and_correlation_time_per_target() {
     let drift = CorrelatedErrorParams {
-        range: RangeDependentSigma { constant_m: 0.1, per_meter: 0.0 },
+        range_sigma: RangeDependentSigma { constant_m: 0.1, per_meter: 0.0 },
         bearing_sigma_rad: 0.02,
         correlation_time_s: 2.0,
     };

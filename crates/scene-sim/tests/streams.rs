@@ -56,7 +56,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     let bearings =
         |params| -> Vec<f64> { of_the_landmark(params).iter().flatten().map(|s| s.bearing).collect() };
     let range = RangeDependentSigma { constant_m: 0.3, per_meter: 0.0 };
-    let drift = CorrelatedErrorParams { range, ..CorrelatedErrorParams::default() };
+    let drift = CorrelatedErrorParams { range_sigma: range, ..CorrelatedErrorParams::default() };
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };
     let missing = RangeBearingParams { missed_share: 0.3, ..honest };

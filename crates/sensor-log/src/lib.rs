@@ -58,7 +58,7 @@ pub use convert::convert;
 pub use error::LogError;
 pub use formats::compressed::read_text;
 pub use formats::format::LogFormat;
-pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
+pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, LogImageStatistics, PixelLayout};
 pub use image_folder::{image_files, is_hidden};
 pub use log::{Log, LogMeta};
 pub use mcap_log::{
@@ -71,7 +71,7 @@ pub use record::{
     Velocity,
 };
 pub use report::{LogEnd, LogWarning, ReadReport, RowProblem, RowProblemKind};
-pub use scan::{LaserScan, ScanSummary};
+pub use scan::{LaserScan, LogScanStatistics};
 pub use stamp::Stamp;
 pub use summary::{LogSummary, RecordKindSummary};
 pub use text::{PoseRelation, read_relations};

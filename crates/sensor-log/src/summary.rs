@@ -1,7 +1,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use crate::{DetectionTarget, ImageSummary, Log, LogMeta, ReadReport, RecordData, ScanSummary, Stamp};
+use crate::{
+    DetectionTarget, Log, LogImageStatistics, LogMeta, LogScanStatistics, ReadReport, RecordData, Stamp,
+};
 
 /// Content of a log; `Display` prints it for people.
 /// ```
@@ -37,9 +39,9 @@ pub struct LogSummary {
     /// Number of detections without identity.
     pub n_unlabelled: u64,
     /// Images by kind of record.
-    pub images: BTreeMap<&'static str, ImageSummary>,
+    pub images: BTreeMap<&'static str, LogImageStatistics>,
     /// Laser scans.
-    pub scans: ScanSummary,
+    pub scans: LogScanStatistics,
     /// Report of the reading.
     pub report: ReadReport,
 }
@@ -77,7 +79,7 @@ impl LogSummary {
             unknown_codes: BTreeMap::new(),
             n_unlabelled: 0,
             images: BTreeMap::new(),
-            scans: ScanSummary::default(),
+            scans: LogScanStatistics::default(),
             report: ReadReport::default(),
         };
         for record in log.by_ref() {

@@ -79,7 +79,7 @@ fn looks_that_could_not_show_a_landmark_do_not_count() {
 #[test]
 fn a_sighting_renews_the_patience() {
     let mut slam = slam(LandmarkConfirmationParams {
-        n_detections: 3,
+        min_detections: 3,
         max_missed: Some(2),
         ..LandmarkConfirmationParams::default()
     });

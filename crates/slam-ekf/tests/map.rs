@@ -109,7 +109,7 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 #[test]
 fn false_first_detection_is_replaced_and_unseen_one_removed() {
     let confirmation = LandmarkConfirmationParams {
-        n_detections: 2,
+        min_detections: 2,
         max_missed: Some(3),
         ..LandmarkConfirmationParams::default()
     };
@@ -142,7 +142,7 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
 #[test]
 fn outliers_are_rejected_or_count_little_and_say_so() {
     let confirmation =
-        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
+        LandmarkConfirmationParams { min_detections: 1, ..LandmarkConfirmationParams::default() };
     for outliers in [OutlierRule::Reject, OutlierRule::Downweight] {
         let mut slam = slam(SlamParams { outlier_rule: outliers, confirmation, ..SlamParams::default() });
         slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -168,7 +168,7 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
 fn nearest_neighbour_pairs_once_and_skips_ambiguous() {
     let mut rule = NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
     let confirmation =
-        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
+        LandmarkConfirmationParams { min_detections: 1, ..LandmarkConfirmationParams::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let unlabelled =
         |range, bearing| Observation { label: None, measurement: RangeBearing::new(range, bearing) };

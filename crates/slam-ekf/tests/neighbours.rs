@@ -18,7 +18,7 @@ const SEED: u64 = 11;
 
 fn slam(sensor: RangeBearingSensor, merging: Option<LandmarkMergingParams>) -> EkfSlam<RangeBearingSensor> {
     let confirmation =
-        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
+        LandmarkConfirmationParams { min_detections: 1, ..LandmarkConfirmationParams::default() };
     let params = SlamParams { confirmation, merging, ..SlamParams::default() };
     EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
 }

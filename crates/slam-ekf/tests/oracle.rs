@@ -118,7 +118,10 @@ fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, OdometryMotion) {
         outlier_rule: OutlierRule::Reject,
         gate_probability: 1.0 - 1e-15,
         update_order: order,
-        confirmation: LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() },
+        confirmation: LandmarkConfirmationParams {
+            min_detections: 1,
+            ..LandmarkConfirmationParams::default()
+        },
         ..SlamParams::default()
     };
     (EkfSlam::new(RangeBearingSensor::default(), params, common::start()).unwrap(), motion)

@@ -19,7 +19,7 @@ type Saved = SlamSnapshot<Pose2<f64>, Vector2<f64>>;
 /// Landmarks that nobody told apart, some of which are forgotten again: the filter's whole memory is at work.
 fn params(linearization: LinearizationPoint) -> SlamParams {
     let confirmation = LandmarkConfirmationParams {
-        n_detections: 4,
+        min_detections: 4,
         max_missed: Some(2),
         ..LandmarkConfirmationParams::default()
     };

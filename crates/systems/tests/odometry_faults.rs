@@ -194,7 +194,7 @@ fn velocity_holds_for_a_limited_time() {
     let params = PointSlamParams::of(RobotProfile::Generic);
     let mut run = points::run(&log, &params, |_| {}).expect("a usable log");
     let x = run.system.filter().robot().pose.x();
-    assert!((x - params.robot.velocity_hold - 0.3).abs() < 1e-9, "{x} m");
+    assert!((x - params.robot.velocity_timeout - 0.3).abs() < 1e-9, "{x} m");
     assert_eq!(run.events().get("motion_unknown"), 1);
     let sigma = run.system.filter().robot_covariance().m11.sqrt();
     assert!(sigma > 1e7, "unknown for 1e8 s at up to 1 m/s: {sigma} m");

@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let number = || value.parse::<f64>();
         let (params, head) = (&mut all.correlation, &mut all.head);
         match name {
-            "padding" => params.padding = number()?,
+            "search_window_scale" => params.search_window_scale = number()?,
             "response_width" => params.response_width = number()?,
             "previous_filter_weight" => params.previous_filter_weight = number()?,
             "color_channel_share" => params.color_channel_share = number()?,

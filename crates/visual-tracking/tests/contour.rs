@@ -213,9 +213,9 @@ fn memory_does_not_grow_with_the_film() {
 fn dynamics_of_ones_own_are_used() {
     let still = ColorDynamics::constant_velocity(0.0, &ColorStateVector::zeros()).unwrap();
     let params = ContourTrackerParams {
-        background_odds: 0.0,
+        min_target_to_background_ratio: 0.0,
         previous_colors_weight: 0.0,
-        anchored_share: 0.0,
+        share_from_last_measurement: 0.0,
         ..ContourTrackerParams::default()
     };
     let mut tracker = on_disk(params).with_dynamics(still);

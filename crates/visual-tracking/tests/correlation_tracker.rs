@@ -199,7 +199,7 @@ fn refuses_targets_that_cannot_be_followed() {
     let featureless = CorrelationTracker::new(&plain, target, CorrelationTrackerParams::default());
     assert!(matches!(featureless, Err(TrackingError::Empty { .. })));
     for params in [
-        CorrelationTrackerParams { padding: f64::NAN, ..Default::default() },
+        CorrelationTrackerParams { search_window_scale: f64::NAN, ..Default::default() },
         CorrelationTrackerParams { color_histogram_weight: 1.5, ..Default::default() },
         CorrelationTrackerParams { n_scale_hypotheses: 8, ..Default::default() },
         CorrelationTrackerParams { scale_step: 1.0, ..Default::default() },

@@ -22,7 +22,7 @@ impl MapArchiveParams {
         writer.u8(views.intensity_scale as u8);
         writer.u8(views.brightness_normalization as u8);
         writer.u8(views.azimuth_direction as u8);
-        writer.f64s([views.min_contrast, views.max_saturated, views.smoothing_sigma]);
+        writer.f64s([views.min_contrast, views.max_saturated_share, views.smoothing_sigma]);
     }
 
     pub(super) fn read(bytes: &[u8]) -> Option<Self> {
@@ -48,7 +48,7 @@ impl MapArchiveParams {
             1 => AzimuthDirection::Counterclockwise,
             _ => return None,
         };
-        let [min_contrast, max_saturated, smoothing] = reader.f64s()?;
+        let [min_contrast, max_saturated_share, smoothing] = reader.f64s()?;
         let views = PanoramaParams {
             n_rings,
             n_sectors,
@@ -57,7 +57,7 @@ impl MapArchiveParams {
             intensity_scale: tone,
             brightness_normalization: normalization,
             min_contrast,
-            max_saturated,
+            max_saturated_share,
             azimuth_direction: sense,
         };
         reader.0.is_empty().then_some(Self { views, size: (columns, rows) })

@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use wayfix_gaussian_core::Gaussian;
 
-use super::{FusionParams, MixtureWeighting, PoseLikelihood, UniformComponent, combine};
+use super::{FusionParams, GaussianMixtureLikelihood, MixtureWeighting, UniformComponent, combine};
 use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 
 /// Fuses a predicted mixture with a measurement. The weights are not normalized, so that further sources can be fused.
@@ -18,7 +18,7 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{FusionParams, PoseHypothesis, PoseLikelihood, UniformComponent, fuse};
+/// use wayfix_appearance_cml::{FusionParams, PoseHypothesis, GaussianMixtureLikelihood, UniformComponent, fuse};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceMapError> {
@@ -26,7 +26,7 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 ///     Ok(PoseHypothesis::new(weight, gaussian))
 /// };
 /// let moved = [at(0.0, 0.5)?, at(10.0, 0.5)?];
-/// let seen = PoseLikelihood { peaks: vec![at(0.1, 0.4)?], floor: 0.1 };
+/// let seen = GaussianMixtureLikelihood { peaks: vec![at(0.1, 0.4)?], floor: 0.1 };
 /// let nowhere_else = UniformComponent { weight: 0.0, volume: 1.0 };
 /// let (fused, _) = fuse(&moved, nowhere_else, &seen, &FusionParams::as_published())?;
 /// let fused = PoseHypothesis::into_mixture(fused)?;
@@ -39,7 +39,7 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 pub fn fuse(
     predicted: &[PoseHypothesis],
     uniform: UniformComponent,
-    observed: &PoseLikelihood,
+    observed: &GaussianMixtureLikelihood,
     params: &FusionParams,
 ) -> Result<(Vec<PoseHypothesis>, UniformComponent), AppearanceMapError> {
     for hypothesis in predicted.iter().chain(&observed.peaks) {
@@ -150,7 +150,7 @@ mod tests {
         params: &FusionParams,
     ) -> Vec<PoseHypothesis> {
         let uniform = UniformComponent { weight: 0.0, volume: 1.0 };
-        let seen = PoseLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
+        let seen = GaussianMixtureLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
         fuse(predicted, uniform, &seen, params).unwrap().0
     }
 
@@ -188,18 +188,21 @@ mod tests {
     fn weight_of_the_unknown_pose_is_a_probability() {
         let uniform = UniformComponent { weight: 1.0, volume: 1000.0 };
         let peak = PoseHypothesis::new(0.5, at(0.0, 0.3, 1.0).gaussian);
-        let seen = PoseLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
+        let seen = GaussianMixtureLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
         let (places, left) = fuse(&[], uniform, &seen, &FusionParams::default()).unwrap();
         let volume = (2.0 * std::f64::consts::PI).powf(1.5) * (0.3 * 0.3 * 0.1);
         assert!((places[0].weight - 0.5 * volume / 1000.0).abs() < 1e-12);
         assert_eq!(left.weight, FLOOR);
         // A peak wider than the map tells no place.
-        let wide = PoseLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
+        let wide = GaussianMixtureLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
         let (places, left) = fuse(&[], uniform, &wide, &FusionParams::default()).unwrap();
         let headings = 0.1 / std::f64::consts::TAU.sqrt();
         assert!(places.is_empty() && (left.weight - 0.5 * headings - FLOOR).abs() < 1e-12);
         // A source of probability 0.9 takes 0.9 of it, whatever the extent of the map.
-        let source = PoseLikelihood::of_probabilities(vec![PoseHypothesis { weight: 0.9, ..peak }], &uniform);
+        let source = GaussianMixtureLikelihood::of_probabilities(
+            vec![PoseHypothesis { weight: 0.9, ..peak }],
+            &uniform,
+        );
         let (places, left) = fuse(&[], uniform, &source, &FusionParams::default()).unwrap();
         assert!((places[0].weight - 0.9).abs() < 1e-12 && (left.weight - 0.1).abs() < 1e-12);
     }
@@ -214,7 +217,7 @@ mod tests {
     #[test]
     fn singular_hypothesis_is_refused_without_a_counterpart() {
         let flat = Gaussian::from_parts_unchecked(Pose2::new(9.0, 0.0, 0.0), Matrix3::zeros());
-        let seen = PoseLikelihood { peaks: vec![PoseHypothesis::new(1.0, flat)], floor: FLOOR };
+        let seen = GaussianMixtureLikelihood { peaks: vec![PoseHypothesis::new(1.0, flat)], floor: FLOOR };
         let uniform = UniformComponent { weight: 0.0, volume: 1.0 };
         assert!(fuse(&[at(0.0, 0.3, 1.0)], uniform, &seen, &FusionParams::default()).is_err());
     }

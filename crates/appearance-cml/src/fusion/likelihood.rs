@@ -12,25 +12,25 @@ use crate::PoseHypothesis;
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{PoseHypothesis, PoseLikelihood, UniformComponent};
+/// use wayfix_appearance_cml::{PoseHypothesis, GaussianMixtureLikelihood, UniformComponent};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 /// // A source that is right with probability 0.9, in a map of 100 m²: the floor is the remaining probability.
 /// let uniform = UniformComponent { weight: 1.0, volume: 100.0 * std::f64::consts::TAU };
-/// let likelihood = PoseLikelihood::of_probabilities(vec![PoseHypothesis::new(0.9, pose)], &uniform);
+/// let likelihood = GaussianMixtureLikelihood::of_probabilities(vec![PoseHypothesis::new(0.9, pose)], &uniform);
 /// assert!((likelihood.floor - 0.1).abs() < 1e-12 && likelihood.peaks[0].weight > 1000.0);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoseLikelihood {
+pub struct GaussianMixtureLikelihood {
     /// The peaks; the weight is the height.
     pub peaks: Vec<PoseHypothesis>,
     /// Likelihood of a pose far from all peaks, on the same scale.
     pub floor: f64,
 }
 
-impl PoseLikelihood {
+impl GaussianMixtureLikelihood {
     /// From hypotheses whose weights are probabilities. The densities of a probability $`w`$ have the height
     /// $`w V / (2π)^{3/2} |C|^{1/2}`$ over a floor of $`1 - w`$, relative to the uniform density $`1/V`$.
     pub fn of_probabilities(mut hypotheses: Vec<PoseHypothesis>, uniform: &UniformComponent) -> Self {

@@ -9,6 +9,6 @@ mod split;
 
 pub use combine::combine;
 pub use fuse::fuse;
-pub use likelihood::{PoseLikelihood, UniformComponent};
+pub use likelihood::{GaussianMixtureLikelihood, UniformComponent};
 pub use params::{FusionParams, GaussianFusionRule, MixtureWeighting};
-pub use source::{PoseSource, PositionFix};
+pub use source::{PoseHypothesisSource, PositionFix};

@@ -9,7 +9,7 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map.
 ///
 /// **Law**: weights are probabilities in [0, 1]; 1 means that no other pose is possible.
-pub trait PoseSource {
+pub trait PoseHypothesisSource {
     /// The hypotheses of the source at this time; the list may be empty.
     ///
     /// `predicted` is the belief after the odometry prediction, `None` before the first; a source that measures only a part of the pose takes
@@ -27,7 +27,7 @@ pub trait PoseSource {
 ///
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
-/// use wayfix_appearance_cml::{PoseSource, PositionFix};
+/// use wayfix_appearance_cml::{PoseHypothesisSource, PositionFix};
 /// let fix = PositionFix { position: Vector2::new(3.0, 4.0), covariance: Matrix2::identity(), weight: 0.9 };
 /// let hypotheses = fix.hypotheses(None)?;
 /// assert_eq!((hypotheses[0].gaussian.mean().x(), hypotheses[0].independent), (3.0, 1.0));
@@ -46,7 +46,7 @@ pub struct PositionFix {
 /// Variance of an unknown heading: that of a uniform one, $`π^2/3`$, rad².
 const UNKNOWN_HEADING: f64 = PI * FRAC_PI_3;
 
-impl PoseSource for PositionFix {
+impl PoseHypothesisSource for PositionFix {
     /// One hypothesis for each predicted heading, so that the axes of the body frames agree; one with heading 0 without a prediction.
     fn hypotheses(
         &self,

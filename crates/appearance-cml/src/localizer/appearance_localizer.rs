@@ -8,8 +8,8 @@ use super::{Event, Learning, LocalizerParams, Start, UpdateOutcome};
 use crate::model::{HEADING_SIGMA, ScaleLearner};
 use crate::state::Motion;
 use crate::{
-    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, OdometryNoise, PoseSource, ReferenceId,
-    ReferenceSearch, separation_squared,
+    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, OdometryNoise, PoseHypothesisSource,
+    ReferenceId, ReferenceSearch, separation_squared,
 };
 
 /// Localizes in an appearance map, and learns it. [Gross et al. 2005]
@@ -184,7 +184,7 @@ where
     pub fn update_with(
         &mut self,
         view: D,
-        sources: &[&dyn PoseSource],
+        sources: &[&dyn PoseHypothesisSource],
     ) -> Result<UpdateOutcome, AppearanceMapError> {
         let view = self.is_news().then_some(view);
         let matched = view.as_ref().map(|view| self.match_view(view)).transpose()?; // Eqs. 9-10

@@ -3,8 +3,8 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::{LocalizerParams, Start};
 use crate::{
-    AppearanceMapError, MixtureWeighting, PoseHypothesis, PoseLikelihood, PoseSource, UniformComponent, fuse,
-    propagate, simplify, unimodal,
+    AppearanceMapError, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesis, PoseHypothesisSource,
+    UniformComponent, fuse, propagate, simplify, unimodal,
 };
 
 /// $`p(x_t)`$: a Gaussian mixture and a uniform component.
@@ -61,8 +61,8 @@ impl Belief {
     /// The uniform component has at least the prior probability of a kidnapping, so that a source can contradict the prediction.
     pub(super) fn fused(
         &self,
-        view: Option<&PoseLikelihood>,
-        sources: &[&dyn PoseSource],
+        view: Option<&GaussianMixtureLikelihood>,
+        sources: &[&dyn PoseHypothesisSource],
         area: f64,
         params: &LocalizerParams,
     ) -> Result<Self, AppearanceMapError> {
@@ -80,9 +80,9 @@ impl Belief {
         for source in sources {
             let hypotheses = source.hypotheses(self.state.as_ref())?;
             let likelihood = if is_evidence {
-                PoseLikelihood::of_probabilities(hypotheses, &uniform)
+                GaussianMixtureLikelihood::of_probabilities(hypotheses, &uniform)
             } else {
-                PoseLikelihood { peaks: hypotheses, floor: 0.0 }
+                GaussianMixtureLikelihood { peaks: hypotheses, floor: 0.0 }
             };
             (fused, uniform) = fuse(&fused, uniform, &likelihood, &params.fusion)?;
         }

@@ -2,11 +2,11 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_gaussian_core::Gaussian;
 
 use super::belief::Belief;
-use super::{AppearanceLocalizer, LocalizerParams, Observation};
+use super::{AppearanceLocalizer, LocalizerParams, PoseHypothesisRule};
 use crate::model::{GROUP_SIZE, N_FAR};
 use crate::{
-    AppearanceMap, AppearanceMapError, Descriptor, PoseHypothesis, PoseLikelihood, ReferenceSearch,
-    interpolate, superpose,
+    AppearanceMap, AppearanceMapError, Descriptor, GaussianMixtureLikelihood, PoseHypothesis,
+    ReferenceSearch, interpolate, superpose,
 };
 
 /// Likelihood of a view that does not match, relative to the peak of one that does: the probability that the best of the references of a wrong
@@ -15,7 +15,7 @@ const FLOOR: f64 = GROUP_SIZE as f64 / (GROUP_SIZE + N_FAR) as f64;
 
 /// $`p(y_t|x_t)`$, and the number of matching places.
 pub(super) struct ViewMatch {
-    pub(super) likelihood: PoseLikelihood,
+    pub(super) likelihood: GaussianMixtureLikelihood,
     pub(super) n_detections: usize,
 }
 
@@ -47,13 +47,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         belief: &Belief,
         params: &LocalizerParams,
     ) -> Result<ViewMatch, AppearanceMapError> {
-        let (matches, peaks) = match params.observation {
-            Observation::Superposition => {
+        let (matches, peaks) = match params.pose_hypothesis_rule {
+            PoseHypothesisRule::Superposition => {
                 let matches = self.all_place_matches(view, &params.map);
                 let peaks = superpose(&matches);
                 (matches, peaks)
             }
-            Observation::Interpolation => {
+            PoseHypothesisRule::Interpolation => {
                 let components = belief.components();
                 let reaches_far = components.iter().any(|component| {
                     self.search_radius(component, &params.map, params.fusion.gate)
@@ -67,6 +67,9 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
                 (matches, peaks)
             }
         };
-        Ok(ViewMatch { likelihood: PoseLikelihood { peaks, floor: FLOOR }, n_detections: matches.len() })
+        Ok(ViewMatch {
+            likelihood: GaussianMixtureLikelihood { peaks, floor: FLOOR },
+            n_detections: matches.len(),
+        })
     }
 }

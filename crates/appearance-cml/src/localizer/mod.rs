@@ -13,5 +13,5 @@ mod start;
 
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
-pub use params::{Learning, LocalizerParams, Observation, Recovery};
+pub use params::{Learning, LocalizerParams, PoseHypothesisRule, Recovery};
 pub use start::Start;

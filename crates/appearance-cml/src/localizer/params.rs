@@ -23,12 +23,12 @@ pub enum Learning {
 /// How matching places become hypotheses of the pose.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::Observation::default(), wayfix_appearance_cml::Observation::Interpolation);
+/// assert_eq!(wayfix_appearance_cml::PoseHypothesisRule::default(), wayfix_appearance_cml::PoseHypothesisRule::Interpolation);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Observation {
+pub enum PoseHypothesisRule {
     /// The weighted sum of all matching places of the map. [Gross et al. 2005, Sec. 2.2]
     Superposition,
     /// One hypothesis for each group of neighbours, interpolated between them ([`interpolate`](crate::interpolate)).
@@ -70,8 +70,8 @@ pub enum Recovery {
 pub struct LocalizerParams {
     /// Noise of the odometry.
     pub odometry: OdometryNoise,
-    /// Default [`Observation::Interpolation`].
-    pub observation: Observation,
+    /// Default [`PoseHypothesisRule::Interpolation`].
+    pub pose_hypothesis_rule: PoseHypothesisRule,
     /// How odometry, view and other sources are fused.
     pub fusion: FusionParams,
     /// How the mixture is kept small.
@@ -94,7 +94,7 @@ impl Default for LocalizerParams {
     fn default() -> Self {
         Self {
             odometry: OdometryNoise::default(),
-            observation: Observation::default(),
+            pose_hypothesis_rule: PoseHypothesisRule::default(),
             fusion: FusionParams::default(),
             simplify: MixtureReductionParams::default(),
             unimodal_weight: 0.8,
@@ -112,7 +112,7 @@ impl LocalizerParams {
     /// learned.
     pub fn as_published() -> Self {
         Self {
-            observation: Observation::Superposition,
+            pose_hypothesis_rule: PoseHypothesisRule::Superposition,
             fusion: FusionParams::as_published(),
             recovery: Recovery::Off,
             map: AppearanceMapParams::as_published(),

@@ -102,8 +102,11 @@ impl PanoramaFeatures {
         };
         let n_saturated = panorama.pixels().iter().filter(is_saturated).count();
         let share = n_saturated as f64 / panorama.pixels().len() as f64;
-        if share > self.params.max_saturated {
-            return Err(AppearanceMapError::SaturatedView { share, max_share: self.params.max_saturated });
+        if share > self.params.max_saturated_share {
+            return Err(AppearanceMapError::SaturatedView {
+                share,
+                max_share: self.params.max_saturated_share,
+            });
         }
         Ok(())
     }

@@ -26,7 +26,7 @@ pub struct PanoramaParams {
     /// Least standard deviation of the cells of a view, as a share of the range of the tone. Default 0.01.
     pub min_contrast: f64,
     /// Largest share of pixels that are all black or all white. Default 0.8.
-    pub max_saturated: f64,
+    pub max_saturated_share: f64,
     /// Which way the columns go round. Default: clockwise, left to right.
     pub azimuth_direction: AzimuthDirection,
 }
@@ -41,7 +41,7 @@ impl Default for PanoramaParams {
             intensity_scale: IntensityScale::Logarithmic,
             brightness_normalization: BrightnessNormalization::MeanVariance,
             min_contrast: 0.01,
-            max_saturated: 0.8,
+            max_saturated_share: 0.8,
             azimuth_direction: AzimuthDirection::Clockwise,
         }
     }
@@ -57,7 +57,7 @@ impl PanoramaParams {
         self.check_harmonics(self.n_sectors)?;
         check::not_negative("smoothing_sigma", self.smoothing_sigma)?;
         check::share("min_contrast", self.min_contrast)?;
-        check::share("max_saturated", self.max_saturated)
+        check::share("max_saturated_share", self.max_saturated_share)
     }
 
     /// No more harmonics than can be told apart.

@@ -142,7 +142,7 @@ mod tests {
         let mut sums = PixelSums::default();
         pixels.into_iter().for_each(|pixel| sums.add_pixel(pixel));
         let params = PixelLikelihoodParams {
-            independent_pixels: 10.0,
+            n_effective_pixels: 10.0,
             brightness_variation: 0.0,
             outlier_share: 1e-9,
             ..Default::default()

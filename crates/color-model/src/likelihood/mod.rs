@@ -1,5 +1,6 @@
 //! Likelihood of an image given a camera pose in a coloured map and the light.
 
+mod choice;
 mod density;
 mod feature;
 mod feature_params;
@@ -11,6 +12,7 @@ mod pixel;
 mod span;
 mod view;
 
+pub use choice::{EitherLikelihood, ImageLikelihood};
 pub use density::PixelSumDensity;
 pub use feature::FeatureLikelihood;
 pub(crate) use feature::feature_colors;

@@ -86,7 +86,7 @@ impl LikelihoodModel for PixelLikelihoodParams {
     }
 
     fn scratch(&self, _frame: &PixelFrame) -> JointScratch {
-        JointScratch(JointLikelihood::new())
+        JointScratch::new()
     }
 
     fn log_likelihoods<T: LightingTracker>(
@@ -117,6 +117,12 @@ impl LikelihoodModel for PixelLikelihoodParams {
 
 /// Working memory of [`PixelLikelihoodParams`] as a [`LikelihoodModel`].
 pub struct JointScratch(pub(crate) JointLikelihood);
+
+impl JointScratch {
+    pub(crate) fn new() -> Self {
+        Self(JointLikelihood::new())
+    }
+}
 
 impl PixelLikelihoodParams {
     /// Pixels that do not share the light.

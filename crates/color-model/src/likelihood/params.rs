@@ -27,7 +27,7 @@ pub struct PixelLikelihoodParams {
     pub light_error_correlation: LightErrorCorrelation,
     /// Number of independent observations in an image; log-likelihoods are multiplied by this over the number of pixels. Neighbouring
     /// pixels share shade, blur and label errors. Default 60: areas of 20 × 20 pixels in an image of 208 × 160.
-    pub independent_pixels: f64,
+    pub n_effective_pixels: f64,
     /// Prior probability that an unmapped object hides a pixel of the map. Such a pixel counts the logarithm of this share, at any pose, and no colour counts less on
     /// average. Default 0.3.
     pub outlier_share: f64,
@@ -41,7 +41,7 @@ impl Default for PixelLikelihoodParams {
     fn default() -> Self {
         Self {
             light_error_correlation: LightErrorCorrelation::Common,
-            independent_pixels: 60.0,
+            n_effective_pixels: 60.0,
             outlier_share: 0.3,
             brightness_variation: 0.12,
             edge_margin_pixels: 1,
@@ -77,7 +77,7 @@ impl PixelLikelihoodParams {
     pub fn as_published() -> Self {
         Self {
             light_error_correlation: LightErrorCorrelation::Each,
-            independent_pixels: f64::INFINITY,
+            n_effective_pixels: f64::INFINITY,
             outlier_share: f64::MIN_POSITIVE,
             brightness_variation: 0.0,
             edge_margin_pixels: 0,
@@ -114,8 +114,8 @@ impl PixelLikelihoodParams {
         let check = |what, value, is_within: bool| {
             if is_within { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
         };
-        let Self { independent_pixels, outlier_share, brightness_variation, .. } = *self;
-        check("independent pixels", independent_pixels, independent_pixels > 0.0)?;
+        let Self { n_effective_pixels, outlier_share, brightness_variation, .. } = *self;
+        check("number of effective pixels", n_effective_pixels, n_effective_pixels > 0.0)?;
         check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share <= 1.0)?;
         check(
             "uneven light",
@@ -126,7 +126,7 @@ impl PixelLikelihoodParams {
 
     /// The exponent of a pixel's likelihood, at most 1.
     pub(crate) fn tempering(&self, n_pixels: usize) -> f64 {
-        (self.independent_pixels / n_pixels.max(1) as f64).min(1.0)
+        (self.n_effective_pixels / n_pixels.max(1) as f64).min(1.0)
     }
 
     /// $`\sum_m \max(n_m \ln ε,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$, tempered.

@@ -8,21 +8,21 @@ use wayfix_estimation_traits::{Manifold, Pose2, Pose3};
 /// With the body's planar pose these make the six degrees of freedom of the camera's location in [Schulz & Fox 2004, IV].
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_color_model::CameraError;
+/// use wayfix_color_model::CameraPoseError;
 /// use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
-/// let tilted = CameraError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.0 };
+/// let tilted = CameraPoseError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.0 };
 /// let camera = tilted.camera_pose(&Pose2::identity(), &Pose3::identity());
 /// assert!((camera.rotation * Vector3::x()).z < 0.0); // a positive tilt looks down
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CameraError {
+pub struct CameraPoseError {
     /// Rotation about the camera's x, y and z axes: roll, tilt (positive looks down) and pan (positive looks left), rad.
     pub rotation: Vector3<f64>,
     /// Height above the reported one, m.
     pub height: f64,
 }
 
-impl CameraError {
+impl CameraPoseError {
     /// The camera in the world, of a robot at `body` whose joints report the camera at `mount` in the robot's frame.
     pub fn camera_pose(&self, body: &Pose2<f64>, mount: &Pose3<f64>) -> Pose3<f64> {
         let (sin, cos) = (0.5 * body.heading()).sin_cos();
@@ -34,7 +34,7 @@ impl CameraError {
     }
 }
 
-/// Standard deviations of [`CameraError`], and how long an error lasts.
+/// Standard deviations of [`CameraPoseError`], and how long an error lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -44,39 +44,47 @@ impl CameraError {
 )]
 pub struct CameraNoise {
     /// Standard deviation of roll, tilt and pan, rad. Default 0.025: the body of a walking four-legged robot sways by 1° to 2°.
-    pub rotation: f64,
+    pub rotation_sigma: f64,
     /// Standard deviation of the height, m. Default 0.008.
-    pub height: f64,
+    pub height_sigma: f64,
     /// Time constant of the errors' correlation, s; 0 draws independent errors for each frame. Default 0.2: half a step of the gait.
     pub correlation_time: f64,
 }
 
 impl Default for CameraNoise {
     fn default() -> Self {
-        Self { rotation: 0.025, height: 0.008, correlation_time: 0.2 }
+        Self { rotation_sigma: 0.025, height_sigma: 0.008, correlation_time: 0.2 }
     }
 }
 
 impl CameraNoise {
     /// The error `seconds` later: $`e' = ρ e + \sqrt{1 - ρ^2}\, n`$, $`ρ = e^{-t/τ}`$, with constant standard deviations.
-    pub fn after<R: Rng + ?Sized>(&self, error: &CameraError, seconds: f64, rng: &mut R) -> CameraError {
+    pub fn after<R: Rng + ?Sized>(
+        &self,
+        error: &CameraPoseError,
+        seconds: f64,
+        rng: &mut R,
+    ) -> CameraPoseError {
         let rho = if self.correlation_time > 0.0 { (-seconds / self.correlation_time).exp() } else { 0.0 };
         let fresh = (1.0 - rho * rho).sqrt();
         let drawn = self.sample(rng);
-        CameraError {
+        CameraPoseError {
             rotation: error.rotation * rho + drawn.rotation * fresh,
             height: error.height * rho + drawn.height * fresh,
         }
     }
 
     /// A draw from the distribution of errors.
-    pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> CameraError {
+    pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> CameraPoseError {
         self.scaled(&Vector4::from_fn(|_, _| rng.sample(StandardNormal)))
     }
 
     /// The error with these standard normal deviates.
-    pub(crate) fn scaled(&self, deviates: &Vector4<f64>) -> CameraError {
-        CameraError { rotation: deviates.xyz() * self.rotation, height: deviates.w * self.height }
+    pub(crate) fn scaled(&self, deviates: &Vector4<f64>) -> CameraPoseError {
+        CameraPoseError {
+            rotation: deviates.xyz() * self.rotation_sigma,
+            height: deviates.w * self.height_sigma,
+        }
     }
 }
 
@@ -86,7 +94,7 @@ pub struct CameraLocation {
     /// Pose of the body on the ground.
     pub body: Pose2<f64>,
     /// Difference between the camera's pose and the pose that the joints report.
-    pub error: CameraError,
+    pub error: CameraPoseError,
 }
 
 impl CameraLocation {
@@ -108,7 +116,7 @@ mod tests {
     fn the_camera_rides_on_the_body() {
         let mount = Pose3 { translation: Vector3::new(0.1, 0.0, 0.2), rotation: UnitQuaternion::identity() };
         let body = Pose2::new(1.0, 2.0, std::f64::consts::FRAC_PI_2);
-        let error = CameraError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.01 };
+        let error = CameraPoseError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.01 };
         let camera = error.camera_pose(&body, &mount);
         assert!((camera.translation - Vector3::new(1.0, 2.1, 0.21)).norm() < 1e-12);
         // A positive tilt looks down: the optical axis of a robot that faces +y.
@@ -127,7 +135,7 @@ mod tests {
             variance += after.rotation.y.powi(2) / f64::from(n);
             product += after.rotation.y * before.rotation.y / f64::from(n);
         }
-        let (expected, rho) = (noise.rotation.powi(2), (-0.1 / noise.correlation_time).exp());
+        let (expected, rho) = (noise.rotation_sigma.powi(2), (-0.1 / noise.correlation_time).exp());
         // Five standard errors of a variance and (at most as large) of a covariance.
         let bound = 5.0 * expected * (2.0 / f64::from(n)).sqrt();
         assert!((variance - expected).abs() < bound && (product - rho * expected).abs() < bound);

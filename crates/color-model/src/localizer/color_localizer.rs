@@ -6,7 +6,8 @@ use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
 use super::{
-    Fix, FrameOutcome, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    FrameOutcome, LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep,
+    PoseEstimate, Start,
     buffer::{BufferedFrame, FrameBuffer},
     camera::CameraLocation,
     estimate::{PLACE_RADIUS, is_same_place},
@@ -267,7 +268,7 @@ where
         let is_start = n_frames <= params.n_frames && n_frames.is_power_of_two();
         let is_due = n_frames > params.n_frames && self.since_search + self.delta.seconds >= params.interval;
         let is_on = !self.params.relocalization.is_off();
-        if params.n_drawn == 0 || !(is_start || (is_due && is_on)) {
+        if params.n_sampled_trajectories == 0 || !(is_start || (is_due && is_on)) {
             return Ok(false);
         }
         let start = if is_start { &self.start } else { &Start::Anywhere };
@@ -362,19 +363,19 @@ where
         let estimate = self.present.estimate()?;
         let share = estimate.share * (1.0 - alternative_probability);
         let per_pixel =
-            1.0 / pixels.independent_pixels.min(f64::from(self.camera.width() * self.camera.height()));
+            1.0 / pixels.n_effective_pixels.min(f64::from(self.camera.width() * self.camera.height()));
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
         let n_frames = self.params.search.n_frames;
         // At even odds, the frames tell the map at the estimate from the background.
         let odds = TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
         let is_explained = self.log_ratios.iter().sum::<f64>() > odds.ln();
-        let fix = match (self.n_updates >= n_frames, is_explained) {
-            (true, false) => Fix::Lost,
-            (true, true) if share > TRACKING_PROBABILITY && is_narrow => Fix::Tracking,
-            _ => Fix::Ambiguous,
+        let status = match (self.n_updates >= n_frames, is_explained) {
+            (true, false) => LocalizationStatus::Lost,
+            (true, true) if share > TRACKING_PROBABILITY && is_narrow => LocalizationStatus::Tracking,
+            _ => LocalizationStatus::Ambiguous,
         };
         Ok(FrameOutcome {
-            fix,
+            status,
             estimate: PoseEstimate { share, ..estimate },
             tempering: weighing.tempering,
             effective_particles: weighing.effective_particles,

@@ -138,7 +138,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         {
             light_probabilities[particle.light] += weight;
             // The worst that a frame can count.
-            let least = params.pixels.outlier_share.ln() * params.pixels.independent_pixels;
+            let least = params.pixels.outlier_share.ln() * params.pixels.n_effective_pixels;
             mean_log_likelihood += weight * particle.log_likelihood.max(least);
         }
         let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
@@ -219,7 +219,7 @@ impl<T: LightingTracker + Clone> ColorParticle<T> {
 /// The mean colour of each region of at least `min_pixels`, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3].
 pub(crate) fn color_means(sums: &[PixelSums], params: &LocalizerParams) -> ColorMeans {
     let mean = |(color, sums): (usize, &PixelSums)| {
-        let is_used = sums.count() >= params.min_pixels.max(1) && params.withheld != Some(color);
+        let is_used = sums.count() >= params.min_pixels.max(1) && params.withheld_color != Some(color);
         (if is_used { sums.mean() } else { None }, sums.count())
     };
     ColorMeans::new(sums.iter().enumerate().map(mean))

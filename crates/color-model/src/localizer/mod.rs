@@ -15,10 +15,10 @@ mod search;
 mod start;
 mod trajectory;
 
-pub use camera::{CameraError, CameraLocation, CameraNoise};
+pub use camera::{CameraLocation, CameraNoise, CameraPoseError};
 pub use color_localizer::ColorLocalizer;
 pub use estimate::PoseEstimate;
 pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};
-pub use outcome::{Fix, FrameOutcome};
+pub use outcome::{FrameOutcome, LocalizationStatus};
 pub use params::{LocalizerParams, SearchParams};
 pub use start::Start;

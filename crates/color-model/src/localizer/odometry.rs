@@ -49,25 +49,25 @@ pub trait OdometryModel: SampleMotion<State = Pose2<f64>, Control = OdometryStep
 )]
 pub struct OdometryNoise {
     /// Standard deviation as a share of the motion: m per m, rad per rad, and rad per m. Default 0.2: the feet of legged robots slip.
-    pub slip: f64,
+    pub relative_sigma: f64,
     /// Standard deviation of the translation, m per square root of a second, also at rest: other robots push. Default 0.03.
     pub translation_per_root_second: f64,
     /// Standard deviation of the rotation, rad per square root of a second, also at rest. Default 0.06.
     pub rotation_per_root_second: f64,
     /// Standard deviation of the speed without odometry, m/s. Default 0.3: the top speed of a walking robot.
-    pub unknown_speed: f64,
+    pub speed_sigma_without_odometry: f64,
     /// Standard deviation of the turning rate without odometry, rad/s. Default 1.
-    pub unknown_turning: f64,
+    pub turn_rate_sigma_without_odometry: f64,
 }
 
 impl Default for OdometryNoise {
     fn default() -> Self {
         Self {
-            slip: 0.2,
+            relative_sigma: 0.2,
             translation_per_root_second: 0.03,
             rotation_per_root_second: 0.06,
-            unknown_speed: 0.3,
-            unknown_turning: 1.0,
+            speed_sigma_without_odometry: 0.3,
+            turn_rate_sigma_without_odometry: 1.0,
         }
     }
 }
@@ -75,11 +75,11 @@ impl Default for OdometryNoise {
 impl OdometryNoise {
     pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
         [
-            ("slip", self.slip),
+            ("relative sigma", self.relative_sigma),
             ("translation per root second", self.translation_per_root_second),
             ("rotation per root second", self.rotation_per_root_second),
-            ("unknown speed", self.unknown_speed),
-            ("unknown turning", self.unknown_turning),
+            ("speed sigma without odometry", self.speed_sigma_without_odometry),
+            ("turn rate sigma without odometry", self.turn_rate_sigma_without_odometry),
         ]
     }
 }
@@ -89,9 +89,12 @@ impl OdometryModel for OdometryNoise {
         let (translation, rotation) = match step.increment {
             Some(increment) => {
                 let walked = increment.translation.norm();
-                (self.slip * walked, self.slip * walked.hypot(increment.heading()))
+                (self.relative_sigma * walked, self.relative_sigma * walked.hypot(increment.heading()))
             }
-            None => (self.unknown_speed * step.seconds, self.unknown_turning * step.seconds),
+            None => (
+                self.speed_sigma_without_odometry * step.seconds,
+                self.turn_rate_sigma_without_odometry * step.seconds,
+            ),
         };
         let root = step.seconds.sqrt();
         (

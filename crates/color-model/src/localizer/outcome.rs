@@ -6,7 +6,7 @@ pub struct FrameOutcome {
     /// Pose of the body after the frame.
     pub estimate: PoseEstimate,
     /// Quality of the estimate.
-    pub fix: Fix,
+    pub status: LocalizationStatus,
     /// Effective number of particles after weighing.
     pub effective_particles: f64,
     /// Exponent of the likelihood, at most 1: below 1 while the particles are too far apart for the likelihood of the frame.
@@ -28,7 +28,7 @@ pub struct FrameOutcome {
 
 /// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fix {
+pub enum LocalizationStatus {
     /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place.
     Tracking,
     /// Several places, or one that is wider.

@@ -8,7 +8,7 @@ use crate::{ColorModelError, Occlusion, PixelLikelihoodParams};
 /// ```
 /// use wayfix_color_model::LocalizerParams;
 /// let published = LocalizerParams::as_published();
-/// assert!(published.relocalization.is_off() && published.search.n_drawn == 0);
+/// assert!(published.relocalization.is_off() && published.search.n_sampled_trajectories == 0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -37,7 +37,7 @@ pub struct LocalizerParams {
     /// How often and for how long an object hides the whole view.
     pub occlusion: Occlusion,
     /// Index of a colour in the map whose means the lighting filter ignores: its estimate then comes from the other colours. Default none.
-    pub withheld: Option<usize>,
+    pub withheld_color: Option<usize>,
 }
 
 /// Parameters of the global search.
@@ -53,9 +53,9 @@ pub struct SearchParams {
     /// Default 16.
     pub n_frames: usize,
     /// Number of trajectories drawn; 0 never searches. Default 4000: one for each 0.3 m × 0.3 m × 0.3 rad of a field of 4 × 3 m, about.
-    pub n_drawn: usize,
+    pub n_sampled_trajectories: usize,
     /// Number of places that are refined at first; it is halved three times. Default 100.
-    pub n_places: usize,
+    pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_moves: u32,
     /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
@@ -64,7 +64,7 @@ pub struct SearchParams {
 
 impl Default for SearchParams {
     fn default() -> Self {
-        Self { n_frames: 16, n_drawn: 4000, n_places: 100, n_moves: 10, interval: 1.0 }
+        Self { n_frames: 16, n_sampled_trajectories: 4000, n_refined_places: 100, n_moves: 10, interval: 1.0 }
     }
 }
 
@@ -80,7 +80,7 @@ impl Default for LocalizerParams {
             tempering_min_ess_share: 0.2,
             min_pixels: 30,
             occlusion: Occlusion::default(),
-            withheld: None,
+            withheld_color: None,
         }
     }
 }
@@ -91,7 +91,7 @@ impl LocalizerParams {
     pub fn as_published() -> Self {
         Self {
             pixels: PixelLikelihoodParams::as_published(),
-            search: SearchParams { n_drawn: 0, ..SearchParams::default() },
+            search: SearchParams { n_sampled_trajectories: 0, ..SearchParams::default() },
             relocalization: RelocalizationParams::off(),
             tempering_min_ess_share: 0.0,
             occlusion: Occlusion { mean_time_hidden: 0.0, ..Occlusion::default() },
@@ -102,10 +102,10 @@ impl LocalizerParams {
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         self.pixels.check()?;
         self.relocalization.validate()?;
-        let CameraNoise { rotation, height, correlation_time } = self.camera;
+        let CameraNoise { rotation_sigma, height_sigma, correlation_time } = self.camera;
         let camera = [
-            ("camera rotation", rotation),
-            ("camera height", height),
+            ("camera rotation sigma", rotation_sigma),
+            ("camera height sigma", height_sigma),
             ("correlation time", correlation_time),
         ];
         let not_negative = self
@@ -118,7 +118,7 @@ impl LocalizerParams {
             check(what, value, 0.0, f64::MAX)?;
         }
         check("number of frames", self.search.n_frames as f64, 1.0, f64::MAX)?;
-        check("number of places", self.search.n_places as f64, 1.0, f64::MAX)?;
+        check("number of places", self.search.n_refined_places as f64, 1.0, f64::MAX)?;
         check("number of moves", f64::from(self.search.n_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
         check(

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     ColorModelError, JointScratch, LightingTracker, LikelihoodModel, PixelClassifier, PixelFrame,
-    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather, likelihood::JointLikelihood,
+    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather,
 };
 
 /// Images are searched at half the resolution.
@@ -131,11 +131,11 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         rng: &mut R,
     ) -> Result<Vec<Found<T>>, ColorModelError> {
         let params = &self.params.search;
-        let drawn = (0..params.n_drawn).map(|n| self.drawn(n, rng)).collect();
+        let drawn = (0..params.n_sampled_trajectories).map(|n| self.drawn(n, rng)).collect();
         let mut candidates =
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?;
         candidates.extend(known.map(|place| self.candidate(&place, self.buffered.len(), Some(place))));
-        retain_places(&mut candidates, params.n_places);
+        retain_places(&mut candidates, params.n_refined_places);
         for round in 0..=N_HALVINGS {
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.weigh(scratch, candidate, Effort::Full);
@@ -143,7 +143,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                     self.refine(scratch, candidate, rng);
                 }
             })?;
-            retain_places(&mut candidates, params.n_places >> (round + 1).min(N_HALVINGS));
+            retain_places(&mut candidates, params.n_refined_places >> (round + 1).min(N_HALVINGS));
         }
         let n_particles = self.params.max_particles.div_ceil(candidates.len().max(1));
         candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()
@@ -317,7 +317,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let scratch = || Scratch {
             projector: MapRenderer::new(Arc::clone(self.scene.map), self.scene.camera),
-            joint: JointScratch(JointLikelihood::new()),
+            joint: JointScratch::new(),
             frames: vec![vec![PixelSums::default(); self.scene.map.colors().len()]; self.frames.len()],
             values: Vec::new(),
         };

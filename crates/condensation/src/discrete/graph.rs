@@ -1,6 +1,6 @@
 use crate::discrete::lattice::n_cells;
 use crate::error::check_state;
-use crate::{CondensationError, SparseTransition, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 
 /// An action in a graph: take the edge of that number out of the place, or stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +14,7 @@ pub enum PlaceGraphMove {
 /// Places joined by directed edges.
 ///
 /// ```
-/// use wayfix_condensation::{PlaceGraphMove, PlaceGraph, StateSpace};
+/// use wayfix_condensation::{PlaceGraphMove, PlaceGraph, DiscreteStateSpace};
 /// let corridor = PlaceGraph::new(3, &[(0, 1), (1, 2), (1, 0)])?;
 /// assert_eq!(corridor.step(1, PlaceGraphMove::Edge(1)), 0);
 /// assert_eq!(corridor.step(2, PlaceGraphMove::Edge(0)), 2); // a dead end
@@ -68,7 +68,7 @@ impl PlaceGraph {
     }
 }
 
-impl StateSpace for PlaceGraph {
+impl DiscreteStateSpace for PlaceGraph {
     type Action = PlaceGraphMove;
 
     fn n_states(&self) -> usize {

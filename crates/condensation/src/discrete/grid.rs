@@ -1,5 +1,5 @@
 use crate::discrete::lattice::n_cells;
-use crate::{CondensationError, LatticeAxis, StateLattice, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace, LatticeAxis, StateLattice};
 
 /// A step to one of the eight neighbours, or none: $`(dx, dy) ∈ \{-1, 0, 1\}^2`$. [Kasprzak & Szynkiewicz, Sec. 2.3]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,7 +31,7 @@ impl GridMove {
 /// Places in rows and columns, two degrees of freedom; the border stops a [`GridMove`].
 ///
 /// ```
-/// use wayfix_condensation::{PositionGrid, GridMove, StateSpace};
+/// use wayfix_condensation::{PositionGrid, GridMove, DiscreteStateSpace};
 /// let grid = PositionGrid::new(4, 3)?;
 /// let corner = grid.state(3, 2).expect("inside");
 /// assert_eq!(grid.step(corner, GridMove { dx: 1, dy: -1 }), grid.state(3, 1).expect("inside"));
@@ -73,7 +73,7 @@ impl PositionGrid {
     }
 }
 
-impl StateSpace for PositionGrid {
+impl DiscreteStateSpace for PositionGrid {
     type Action = GridMove;
 
     fn n_states(&self) -> usize {

@@ -1,6 +1,6 @@
 use crate::discrete::grid::shifted;
 use crate::discrete::lattice::n_cells;
-use crate::{CondensationError, LatticeAxis, StateLattice, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace, LatticeAxis, StateLattice};
 
 /// What a robot with a heading may do in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,7 +21,7 @@ pub enum Maneuver {
 /// The border stops a robot, also in the direction along the border.
 ///
 /// ```
-/// use wayfix_condensation::{HeadingGrid, Maneuver, StateSpace};
+/// use wayfix_condensation::{HeadingGrid, Maneuver, DiscreteStateSpace};
 /// let grid = HeadingGrid::new(5, 4)?;
 /// let start = grid.state(1, 1, 7).expect("inside");
 /// let turned = grid.step(start, Maneuver::TurnLeft);
@@ -65,7 +65,7 @@ impl HeadingGrid {
     }
 }
 
-impl StateSpace for HeadingGrid {
+impl DiscreteStateSpace for HeadingGrid {
     type Action = Maneuver;
 
     fn n_states(&self) -> usize {

@@ -1,4 +1,4 @@
-use crate::{CondensationError, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace};
 
 /// One direction of a lattice of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct LatticeAxis {
 /// A state space whose states form a box, numbered with the last axis fastest.
 ///
 /// **Law**: the product of the axes' lengths is the number of states.
-pub trait StateLattice: StateSpace {
+pub trait StateLattice: DiscreteStateSpace {
     /// The axes, slowest first.
     fn axes(&self) -> &[LatticeAxis];
 }

@@ -24,6 +24,6 @@ pub use heading_grid::{HeadingGrid, Maneuver};
 pub use lattice::{LatticeAxis, StateLattice};
 pub use outcome::{MeasurementEvidence, MeasurementOutcome};
 pub use slip::SlipProbabilities;
-pub use space::StateSpace;
+pub use space::DiscreteStateSpace;
 pub use sparse::SparseTransition;
 pub use transition::TransitionModel;

@@ -1,5 +1,5 @@
 use crate::error::probability;
-use crate::{CondensationError, SparseTransition, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 
 /// How moves go wrong: with these probabilities the robot stays where it is, or does one of the other actions instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ impl SlipProbabilities {
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when the probabilities are none, or exceed one together.
-    pub fn transition<S: StateSpace>(
+    pub fn transition<S: DiscreteStateSpace>(
         &self,
         space: &S,
         action: S::Action,

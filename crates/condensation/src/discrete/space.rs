@@ -4,9 +4,9 @@
 /// space leads to where a wall would stop it.
 ///
 /// ```
-/// use wayfix_condensation::{StateSpace, TransitionModel};
+/// use wayfix_condensation::{DiscreteStateSpace, TransitionModel};
 /// struct Ring(usize);
-/// impl StateSpace for Ring {
+/// impl DiscreteStateSpace for Ring {
 ///     type Action = bool;
 ///     fn n_states(&self) -> usize { self.0 }
 ///     fn actions(&self) -> &[bool] { &[false, true] } // stand still, go on
@@ -14,7 +14,7 @@
 /// }
 /// assert_eq!(Ring(5).step(4, true), 0);
 /// ```
-pub trait StateSpace {
+pub trait DiscreteStateSpace {
     /// What the robot may do.
     type Action: Copy;
 

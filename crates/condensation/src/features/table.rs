@@ -1,7 +1,7 @@
 use image::RgbImage;
 
 use crate::discrete::PositionGrid;
-use crate::{CondensationError, StateSpace, View, ViewGrid};
+use crate::{CondensationError, DiscreteStateSpace, View, ViewGrid};
 
 /// A global feature of a view: a few numbers that tell views apart. Implement the first two methods to use your own.
 ///

@@ -5,7 +5,7 @@ use crate::{CondensationError, PositionGrid, View};
 /// The views of a scene: a window that moves in steps of so many pixels, one state a position. [Kasprzak & Szynkiewicz, Sec. 2.3]
 ///
 /// ```
-/// use wayfix_condensation::{StateSpace, ViewGrid};
+/// use wayfix_condensation::{DiscreteStateSpace, ViewGrid};
 /// let views = ViewGrid::new((640, 427), (128, 128), 32)?;
 /// assert_eq!((views.grid().columns(), views.grid().rows()), (17, 10));
 /// assert_eq!(views.corner(18)?, (32, 32));

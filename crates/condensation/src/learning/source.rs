@@ -1,7 +1,9 @@
 use image::RgbImage;
 
 use crate::features::shifted;
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, LightChange, StateSpace, View, ViewGrid};
+use crate::{
+    CondensationError, DescriptorTable, DiscreteStateSpace, GlobalDescriptor, LightChange, View, ViewGrid,
+};
 
 /// Where learned views come from, and how they would look shifted and in another light.
 pub trait ViewSource {

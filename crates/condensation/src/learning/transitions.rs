@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::{check_state, checked};
-use crate::{CondensationError, SparseTransition, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 
 /// Where moves led: counts from which transition probabilities are learned. [Kasprzak & Szynkiewicz, Sec. 2.2]
 ///
@@ -20,12 +20,12 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MoveCounts<'a, S: StateSpace> {
+pub struct MoveCounts<'a, S: DiscreteStateSpace> {
     space: &'a S,
     counts: Vec<BTreeMap<(usize, usize), u32>>, // by action: from, to
 }
 
-impl<'a, S: StateSpace> MoveCounts<'a, S>
+impl<'a, S: DiscreteStateSpace> MoveCounts<'a, S>
 where
     S::Action: PartialEq,
 {

@@ -1,7 +1,7 @@
 use rand::{Rng, RngExt};
 
 use crate::discrete::entropy;
-use crate::{MostProbableState, ShortestPathLengths, StateSpace, ViewLocalizer};
+use crate::{DiscreteStateSpace, MostProbableState, ShortestPathLengths, ViewLocalizer};
 
 /// How the next action is chosen while the robot is not certain where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum ActionSelection {
 impl ActionSelection {
     /// The index of the action to take; none when there is no way. At a goal that is doubtful the greedy choice is a random action, since
     /// standing still shows nothing new.
-    pub(super) fn choose<S: StateSpace, R: Rng + ?Sized>(
+    pub(super) fn choose<S: DiscreteStateSpace, R: Rng + ?Sized>(
         self,
         space: &S,
         routes: &ShortestPathLengths,
@@ -53,7 +53,7 @@ impl ActionSelection {
 }
 
 /// The action of the least expected entropy after the next look, the first of equal ones.
-fn most_informative<S: StateSpace>(
+fn most_informative<S: DiscreteStateSpace>(
     space: &S,
     open: &[usize],
     localizer: &ViewLocalizer,

@@ -4,8 +4,8 @@ use wayfix_integrity::CusumTest;
 use crate::error::{check_size, checked};
 use crate::navigation::report::{NavigationOutcome, NavigationReport};
 use crate::{
-    ActionSelection, CondensationError, MeasurementOutcome, ShortestPathLengths, SlipProbabilities,
-    SparseTransition, StateSpace, ViewLocalizer,
+    ActionSelection, CondensationError, DiscreteStateSpace, MeasurementOutcome, ShortestPathLengths,
+    SlipProbabilities, SparseTransition, ViewLocalizer,
 };
 
 /// Where a robot moves and looks: a simulation, or the robot itself.
@@ -52,13 +52,13 @@ impl Default for NavigatorParams {
 
 /// The loop of self-localization on the way to a goal. [Kasprzak & Szynkiewicz, Sec. 2.2]
 #[derive(Clone, Debug)]
-pub struct Navigator<S: StateSpace> {
+pub struct Navigator<S: DiscreteStateSpace> {
     space: S,
     transitions: Vec<SparseTransition>, // by action
     params: NavigatorParams,
 }
 
-impl<S: StateSpace> Navigator<S> {
+impl<S: DiscreteStateSpace> Navigator<S> {
     /// For a space and its moves.
     ///
     /// # Errors

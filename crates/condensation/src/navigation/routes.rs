@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 
 use crate::error::check_state;
-use crate::{CondensationError, StateSpace};
+use crate::{CondensationError, DiscreteStateSpace};
 
 /// The number of actions from every state to a goal, if nothing goes wrong.
 ///
@@ -23,7 +23,7 @@ impl ShortestPathLengths {
     ///
     /// # Errors
     /// [`CondensationError::State`] when the goal does not exist.
-    pub fn to_goal<S: StateSpace>(space: &S, goal: usize) -> Result<Self, CondensationError> {
+    pub fn to_goal<S: DiscreteStateSpace>(space: &S, goal: usize) -> Result<Self, CondensationError> {
         check_state(goal, space.n_states())?;
         let mut predecessors = vec![Vec::new(); space.n_states()];
         for state in 0..space.n_states() {
@@ -56,7 +56,7 @@ impl ShortestPathLengths {
     }
 
     /// The index of the first action that brings a state nearest to the goal, unless there is no way.
-    pub(super) fn toward<S: StateSpace>(&self, space: &S, state: usize) -> Option<usize> {
+    pub(super) fn toward<S: DiscreteStateSpace>(&self, space: &S, state: usize) -> Option<usize> {
         let reach = |(index, &action): (usize, &S::Action)| {
             self.distance(space.step(state, action)).map(|distance| (distance, index))
         };

@@ -5,7 +5,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    DescriptorTable, GridMove, NavigationEnvironment, PositionGrid, RgbImage, StateSpace,
+    DescriptorTable, DiscreteStateSpace, GridMove, NavigationEnvironment, PositionGrid, RgbImage,
 };
 
 /// Soft blobs of colour on a gradient: smooth as photographs are, and different everywhere.

@@ -75,7 +75,7 @@ fn growth(name: &str, seeds: &[[SimulatedDriveResult; 4]], at: usize) -> Vec<Met
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 4]> {
     let building = Laboratory::draw(&mut Draw::World.rng(seed)).building();
     let ambient_light =
-        AmbientLightParams { switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
+        AmbientLightParams { mean_switching_interval_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
     let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);

@@ -109,8 +109,10 @@ fn trial(
     let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
     let run: ColorRun = run(&records, Arc::clone(map), bank.clone(), params, start, seed, |_| {})?;
     let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
-    let reported_tracking =
-        run.samples().last().is_some_and(|(frame, _)| frame.fix == wayfix_color_model::Fix::Tracking);
+    let reported_tracking = run
+        .samples()
+        .last()
+        .is_some_and(|(frame, _)| frame.status == wayfix_color_model::LocalizationStatus::Tracking);
     Ok(ConvergenceTrial { seed, errors, reported_tracking })
 }
 

@@ -65,11 +65,13 @@ pub fn withheld_in_halls(
 fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
     let mean_of = |what: &str, values: &[f64]| {
-        MeanInterval::of(values).map(|mean| (Metric::of_mean(&format!("{name}_{what}"), &mean, ""), mean))
+        MeanInterval::of(values)
+            .map(|mean| (Metric::of_mean(&format!("withheld_{name}_rate_{what}"), &mean, ""), mean))
     };
-    let all = [mean_of("joint", joint), mean_of("independent", independent), mean_of("gain", &gain)];
+    let all =
+        [mean_of("joint_prior", joint), mean_of("independent_prior", independent), mean_of("gain", &gain)];
     let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
-    let low = Metric::new(format!("{name}_gain_low95"), mean.mean - mean.half_width, "");
+    let low = Metric::new(format!("withheld_{name}_rate_gain_low95"), mean.mean - mean.half_width, "");
     joint.into_iter().chain(independent).chain(gain).chain([low]).collect()
 }
 
@@ -87,7 +89,7 @@ fn rates(
         .par_iter()
         .map(|&(color, kind)| {
             let mut params = params.clone();
-            params.localizer.withheld = Some(color);
+            params.localizer.withheld_color = Some(color);
             let bank = priors::bank(&kinds[kind], &params)?;
             let run = run(records, Arc::clone(map), bank, &params, None, seed, |_| {})?;
             let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());

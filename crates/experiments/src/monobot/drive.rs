@@ -46,7 +46,7 @@ const SMALLEST_SIGMA: f64 = 1e-6;
 /// The plain Kalman filter: every landmark is used at once, without gating.
 pub(crate) fn plain_filter() -> SlamParams {
     let confirmation =
-        LandmarkConfirmationParams { n_detections: 1, ..LandmarkConfirmationParams::default() };
+        LandmarkConfirmationParams { min_detections: 1, ..LandmarkConfirmationParams::default() };
     SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
 }
 

@@ -54,8 +54,7 @@ impl Silhouette {
         self.inside.iter().filter(|&&inside| inside).count()
     }
 
-    /// Left and top edge, width and height in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$; `None` without
-    /// pixels.
+    /// Left and top edge, width and height in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$; `None` if empty.
     pub fn bounding_box(&self) -> Option<[f64; 4]> {
         let (mut left, mut right, mut top, mut bottom) = (self.width, 0, self.height, 0);
         for (i, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {

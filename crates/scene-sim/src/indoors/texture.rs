@@ -5,8 +5,7 @@ pub(super) const TEXEL_M: f64 = 0.05;
 /// Number of halvings of each axis, besides the finest level.
 const HALVINGS: [usize; 2] = [6, 5];
 
-/// The colours of an upright surface, stored for every pair of halvings along its length and height, so that a wide ray needs one
-/// look-up.
+/// The colours of an upright surface, stored for every pair of halvings along its length and height: one look-up for a wide ray.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Texture {
     levels: Vec<Level>,

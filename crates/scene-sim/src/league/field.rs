@@ -31,8 +31,7 @@ const GOAL_DEPTH_M: f64 = 0.3;
 const GOAL_M: f64 = 0.3;
 const BEACON_RADIUS_M: f64 = 0.05;
 
-/// The field of the four-legged league in the manner of its rules of 2003: six beacons, boards all round, and the sky-blue goal
-/// at positive x.
+/// The field of the four-legged league in the manner of its rules of 2003: six beacons, boards all round, sky-blue goal at positive x.
 ///
 /// Carpet of 4.2 × 2.7 m with its corners cut off, boards 0.1 m high, goals 0.6 m wide and 0.3 m high and deep, lines 25 mm
 /// wide, a centre circle of 0.36 m diameter, beacons 0.1 m thick and 0.4 m high. Their upper halves are two bands: pink, and the

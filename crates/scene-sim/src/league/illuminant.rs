@@ -2,8 +2,7 @@ use super::LinearRgb;
 
 /// Linear sRGB of a black body of the given temperature (kelvin, clamped to 1667 … 25 000), with luminance 1.
 ///
-/// Chromaticity by the cubic splines of [Kim et al. 2002], then the matrix of IEC 61966-2-1. Warm light has almost no blue primary; negative
-/// values are set to zero.
+/// Chromaticity by the cubic splines of [Kim et al. 2002], then the matrix of IEC 61966-2-1. Warm light has almost no blue primary; negative values become 0.
 /// ```
 /// use wayfix_scene_sim::league::black_body;
 /// let (warm, day) = (black_body(2700.0), black_body(6500.0));

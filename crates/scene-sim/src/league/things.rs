@@ -16,8 +16,7 @@ const ORANGE: [f64; 3] = [0.80, 0.26, 0.04];
 const TROUSERS: [f64; 3] = [0.03, 0.03, 0.035];
 const BALL_RADIUS_M: f64 = 0.04;
 
-/// Unmapped objects on the field: a red and a blue robot, an orange ball, a referee's legs. They move slowly and avoid the
-/// robot.
+/// Unmapped objects on the field: a red and a blue robot, an orange ball, a referee's legs. They move slowly and avoid the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnmappedObjects {
     red: Round,

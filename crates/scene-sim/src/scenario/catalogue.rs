@@ -86,7 +86,7 @@ fn office_velocity() -> PlanarParams {
             noise_shape: NoiseShape::StudentT { degrees_of_freedom: 5.0 },
             range_bias_m: 0.02,
             drift: CorrelatedErrorParams {
-                range: RangeDependentSigma { constant_m: 0.02, per_meter: 0.03 },
+                range_sigma: RangeDependentSigma { constant_m: 0.02, per_meter: 0.03 },
                 bearing_sigma_rad: 0.006,
                 correlation_time_s: 8.0,
             },
@@ -138,7 +138,7 @@ fn rough_known() -> PlanarParams {
             range_scale: 1.005,
             bearing_bias_rad: 0.01,
             drift: CorrelatedErrorParams {
-                range: RangeDependentSigma { constant_m: 0.02, per_meter: 0.005 },
+                range_sigma: RangeDependentSigma { constant_m: 0.02, per_meter: 0.005 },
                 bearing_sigma_rad: 0.005,
                 correlation_time_s: 3.0,
             },

@@ -84,8 +84,7 @@ impl Scenario {
         found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// The same with other random draws. A store or a hall of the four-legged league is then drawn too, with unseen
-    /// light.
+    /// The same with other random draws. A store or a hall of the four-legged league is then drawn too, with unseen light.
     /// ```
     /// use wayfix_scene_sim::Scenario;
     /// let scenario = Scenario::named("office_velocity")?.with_seed(100);

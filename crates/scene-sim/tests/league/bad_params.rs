@@ -65,10 +65,10 @@ fn robots() {
         ];
         let sways = [
             BodySwayParams { stride_s: bad, ..default.sway },
-            BodySwayParams { roll_rad: bad, ..default.sway },
-            BodySwayParams { pitch_rad: bad, ..default.sway },
-            BodySwayParams { height_m: bad, ..default.sway },
-            BodySwayParams { tilt_error_rad: bad, ..default.sway },
+            BodySwayParams { roll_amplitude_rad: bad, ..default.sway },
+            BodySwayParams { pitch_amplitude_rad: bad, ..default.sway },
+            BodySwayParams { height_amplitude_m: bad, ..default.sway },
+            BodySwayParams { tilt_error_sigma_rad: bad, ..default.sway },
         ];
         let heads = [
             RobotHeadParams { speed_radps: bad, ..default.head },
@@ -76,8 +76,8 @@ fn robots() {
             RobotHeadParams { mean_gaze_s: bad, ..default.head },
             RobotHeadParams { downward_gaze_share: bad, ..default.head },
             RobotHeadParams { angle_resolution_rad: bad, ..default.head },
-            RobotHeadParams { lag_s: bad, ..default.head },
-            RobotHeadParams { bias_rad: bad, ..default.head },
+            RobotHeadParams { angle_latency_s: bad, ..default.head },
+            RobotHeadParams { angle_bias_sigma_rad: bad, ..default.head },
         ];
         let odometries = [
             GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },

@@ -42,13 +42,18 @@ fn without_sway_and_errors_of_the_joints_the_mount_is_true() {
     let default = LeggedRobotParams::default();
     let params = LeggedRobotParams {
         sway: BodySwayParams {
-            roll_rad: 0.0,
-            pitch_rad: 0.0,
-            height_m: 0.0,
-            tilt_error_rad: 0.0,
+            roll_amplitude_rad: 0.0,
+            pitch_amplitude_rad: 0.0,
+            height_amplitude_m: 0.0,
+            tilt_error_sigma_rad: 0.0,
             ..default.sway
         },
-        head: RobotHeadParams { angle_resolution_rad: 0.0, lag_s: 0.0, bias_rad: 0.0, ..default.head },
+        head: RobotHeadParams {
+            angle_resolution_rad: 0.0,
+            angle_latency_s: 0.0,
+            angle_bias_sigma_rad: 0.0,
+            ..default.head
+        },
         ..default
     };
     let (angle, height) = mount_errors(params, 1);

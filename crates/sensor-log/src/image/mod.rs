@@ -16,4 +16,4 @@ pub use error::ImageError;
 pub(crate) use message::picture;
 pub(crate) use pixels::Pixels;
 pub(crate) use pnm::Anymap;
-pub use summary::ImageSummary;
+pub use summary::LogImageStatistics;

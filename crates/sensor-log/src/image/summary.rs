@@ -5,8 +5,8 @@ use super::{EncodedImage, ImageFormat};
 
 /// Image statistics from the headers; `Display` prints them for people.
 /// ```
-/// use wayfix_sensor_log::{EncodedImage, ImageFormat, ImageSummary};
-/// let mut summary = ImageSummary::default();
+/// use wayfix_sensor_log::{EncodedImage, ImageFormat, LogImageStatistics};
+/// let mut summary = LogImageStatistics::default();
 /// summary.add(&EncodedImage::png_gray(3, 2, &[0; 6])?);
 /// summary.add(&EncodedImage::new(ImageFormat::Jpeg, &[0xFF, 0xD8, 0xFF][..]));
 /// assert_eq!(summary.sizes[&(ImageFormat::Png, 3, 2)], 1);
@@ -15,7 +15,7 @@ use super::{EncodedImage, ImageFormat};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub struct ImageSummary {
+pub struct LogImageStatistics {
     /// Number of images of each format, width and height.
     pub sizes: BTreeMap<(ImageFormat, u32, u32), u64>,
     /// Number of images with an unreadable or truncated header.
@@ -24,7 +24,7 @@ pub struct ImageSummary {
     pub n_bytes: u64,
 }
 
-impl ImageSummary {
+impl LogImageStatistics {
     /// Counts an image.
     pub fn add(&mut self, image: &EncodedImage) {
         self.n_bytes += image.bytes.len() as u64;
@@ -35,7 +35,7 @@ impl ImageSummary {
     }
 }
 
-impl fmt::Display for ImageSummary {
+impl fmt::Display for LogImageStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for ((format, width, height), count) in &self.sizes {
             write!(f, "{count} {} of {width} x {height} pixels, ", format.name())?;

@@ -4,4 +4,4 @@ mod laser_scan;
 mod summary;
 
 pub use laser_scan::LaserScan;
-pub use summary::ScanSummary;
+pub use summary::LogScanStatistics;

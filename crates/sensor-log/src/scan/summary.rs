@@ -5,8 +5,8 @@ use super::LaserScan;
 
 /// Scan statistics; `Display` prints them for people.
 /// ```
-/// use wayfix_sensor_log::{LaserScan, ScanSummary};
-/// let mut summary = ScanSummary::default();
+/// use wayfix_sensor_log::{LaserScan, LogScanStatistics};
+/// let mut summary = LogScanStatistics::default();
 /// let (angle_min, angle_increment, range_max, beam_period) = (0.0, 0.1, 8.0, 0.0);
 /// summary.add(&LaserScan { angle_min, angle_increment, range_max, beam_period, ranges: vec![1.0, 9.0] });
 /// assert_eq!((summary.n_beams, summary.n_without_echo), (2, 1));
@@ -14,7 +14,7 @@ use super::LaserScan;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub struct ScanSummary {
+pub struct LogScanStatistics {
     /// Number of scans by number of beams.
     pub sizes: BTreeMap<usize, u64>,
     /// Beams of all scans.
@@ -23,7 +23,7 @@ pub struct ScanSummary {
     pub n_without_echo: u64,
 }
 
-impl ScanSummary {
+impl LogScanStatistics {
     /// Counts a scan.
     pub fn add(&mut self, scan: &LaserScan) {
         let n_beams = scan.ranges.len();
@@ -33,7 +33,7 @@ impl ScanSummary {
     }
 }
 
-impl fmt::Display for ScanSummary {
+impl fmt::Display for LogScanStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sizes: Vec<String> =
             self.sizes.iter().map(|(n_beams, count)| format!("{count} of {n_beams} beams")).collect();

@@ -28,7 +28,7 @@ where
         let known = NewLandmark { landmark, robot_jacobian, covariance };
         self.check_free(id)?;
         self.check_start(&known)?;
-        self.append(id, known, self.params.confirmation.n_detections);
+        self.append(id, known, self.params.confirmation.min_detections);
         Ok(())
     }
 

@@ -2,15 +2,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
 
-use crate::system::VELOCITY_HOLD;
+use crate::system::VELOCITY_TIMEOUT;
 
 /// Parameters of `wayfix run cml`. Keys that a parameter file omits keep their defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
-    /// Time after its stamp for which a velocity holds, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
-    pub velocity_hold: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
+    pub velocity_timeout: f64,
     /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,
     /// Uncertainty of the poses of the training views.
@@ -28,7 +27,7 @@ pub struct CmlParams {
 impl Default for CmlParams {
     fn default() -> Self {
         Self {
-            velocity_hold: VELOCITY_HOLD,
+            velocity_timeout: VELOCITY_TIMEOUT,
             odometry_delay: 0.0,
             taught_pose_uncertainty: PoseSigmas::default(),
             start_uncertainty: PoseSigmas::default(),

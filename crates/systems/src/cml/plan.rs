@@ -124,7 +124,7 @@ impl CmlRunPlan {
         params: &mut CmlParams,
         camera: &CameraReadingMode,
     ) -> Result<Self> {
-        let turns = image_headings(&records, params.velocity_hold);
+        let turns = image_headings(&records, params.velocity_timeout);
         let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
         let mut plan = Self { headings_are_measured: true, ..Self::default() };
         plan.notes.push(choose_sense(evidence, HeadingSource::Given, params, camera));
@@ -177,13 +177,13 @@ fn records(
 }
 
 /// Images of a log with the odometry heading at each. Skips impossible odometry, which the system rejects and reports.
-fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage, f64)> {
+fn image_headings(records: &[Record], velocity_timeout: f64) -> Vec<(&EncodedImage, f64)> {
     let (mut held, mut plausible) = (HeldVelocity::default(), IncrementPlausibilityCheck::default());
     let mut pose = Pose2::new(0.0, 0.0, 0.0);
     let mut headings = Vec::new();
     for record in records {
         let mut advance = || {
-            let motion = held.motion_until(record.stamp, velocity_hold);
+            let motion = held.motion_until(record.stamp, velocity_timeout);
             pose = motion.map_or(pose, |motion| pose.compose(&motion.increment));
         };
         match &record.data {

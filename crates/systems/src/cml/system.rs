@@ -24,7 +24,7 @@ pub struct CmlSystem {
     reader: ViewReader,
     localizer: PanoramaLocalizer,
     velocity: HeldVelocity,
-    velocity_hold: f64,
+    velocity_timeout: f64,
     plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
     /// Dead-reckoned pose at each view, from the first record on.
@@ -69,7 +69,7 @@ impl CmlSystem {
             reader,
             localizer: PanoramaLocalizer::with_map(params.localizer, map, Start::Anywhere)?,
             velocity: HeldVelocity::default(),
-            velocity_hold: params.velocity_hold,
+            velocity_timeout: params.velocity_timeout,
             plausible: IncrementPlausibilityCheck::default(),
             odometry: None,
             dead_reckoning: Vec::new(),
@@ -142,12 +142,12 @@ impl CmlSystem {
 
     /// Predicts the pose to `stamp` with the held velocity.
     fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
-        let Some(held) = self.velocity.motion_until(stamp, self.velocity_hold) else { return Ok(()) };
+        let Some(held) = self.velocity.motion_until(stamp, self.velocity_timeout) else { return Ok(()) };
         if held.unknown_seconds > 0.0 {
-            let hold = self.velocity_hold;
+            let hold = self.velocity_timeout;
             self.events.warn(
                 "motion_unknown",
-                format!("velocities are missing for more than {hold} s: the motion is unknown there (velocity_hold)"),
+                format!("velocities are missing for more than {hold} s: the motion is unknown there (velocity_timeout)"),
             );
         }
         self.move_by(&held.increment)

@@ -1,7 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_color_model::{
-    BackgroundColorModel, LightingDrift, LocalizerParams, UnseenColorRule, YuvStandard,
+    BackgroundColorModel, FeatureLikelihoodParams, ImageLikelihood, LightingDrift, LocalizerParams,
+    UnseenColorRule, YuvStandard,
 };
 
 /// Parameters of `wayfix run color`. Keys that a parameter file omits keep their defaults.
@@ -26,12 +27,20 @@ pub struct ColorSystemParams {
     pub start_uncertainty: StartPoseUncertainty,
     /// The particle filter.
     pub localizer: LocalizerParams,
+    /// Weighs particles by the blobs of the image instead of all its pixels; the search uses pixels. Default none.
+    pub feature_likelihood: Option<FeatureLikelihoodParams>,
     /// Model of the pixels that show no map surface.
     #[serde(skip)]
     pub background_model: BackgroundColorModel,
 }
 
 impl ColorSystemParams {
+    /// The likelihood of the particles.
+    pub(crate) fn likelihood(&self) -> ImageLikelihood {
+        self.feature_likelihood
+            .map_or(ImageLikelihood::Pixels(self.localizer.pixels), ImageLikelihood::Features)
+    }
+
     /// Sets the localizer as published. Odometry and camera describe the robot, not the method.
     pub fn set_published(&mut self) {
         let LocalizerParams { odometry, camera, .. } = self.localizer;
@@ -67,6 +76,7 @@ impl Default for ColorSystemParams {
             odometry_delay: 0.0,
             start_uncertainty: StartPoseUncertainty::default(),
             localizer: LocalizerParams::default(),
+            feature_likelihood: None,
             background_model: BackgroundColorModel::Uniform,
         }
     }

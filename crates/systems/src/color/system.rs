@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_color_model::{
-    ColorDensity, ColorLocalizer, ColorLookUpTable, Fix, LightingBank, OdometryStep, PixelClassifier, Start,
-    YuvImage,
+    ColorDensity, ColorLocalizer, ColorLookUpTable, ImageLikelihood, LightingBank, LocalizationStatus,
+    OdometryNoise, OdometryStep, PixelClassifier, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -33,7 +33,7 @@ pub struct ColorSystem {
     camera: Option<CameraInfo>,
     mount: Option<Pose3<f64>>,
     labels: Option<(Stamp, EncodedImage)>,
-    localizer: Option<ColorLocalizer>,
+    localizer: Option<Localizer>,
     pending: Pending,
     plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
@@ -57,7 +57,7 @@ pub struct ColorFrameResult {
     /// The pose estimate, with covariance in its body frame.
     pub pose: Gaussian<Pose2<f64>>,
     /// Quality of the estimate.
-    pub fix: Fix,
+    pub status: LocalizationStatus,
     /// Dead-reckoned pose; `None` without a known start.
     pub odometry: Option<Pose2<f64>>,
     /// Effective number of particles.
@@ -75,6 +75,8 @@ pub struct ColorFrameResult {
     /// Computing time after decoding.
     pub step: Duration,
 }
+
+type Localizer = ColorLocalizer<LightingBank, OdometryNoise, ImageLikelihood>;
 
 impl ColorSystem {
     /// Creates a system before its first record.
@@ -114,7 +116,7 @@ impl ColorSystem {
     }
 
     /// The localizer; `None` before the first frame.
-    pub fn localizer(&self) -> Option<&ColorLocalizer> {
+    pub fn localizer(&self) -> Option<&Localizer> {
         self.localizer.as_ref()
     }
 
@@ -180,17 +182,17 @@ impl ColorSystem {
         let outcome = self.localize(stamp, info, &mount, &image).map_err(|error| error.to_string())?;
         let step = stopwatch.elapsed();
 
-        self.events.count(match outcome.fix {
-            Fix::Tracking => "tracking",
-            Fix::Ambiguous => "ambiguous",
-            Fix::Lost => "lost",
+        self.events.count(match outcome.status {
+            LocalizationStatus::Tracking => "tracking",
+            LocalizationStatus::Ambiguous => "ambiguous",
+            LocalizationStatus::Lost => "lost",
         });
 
         let labelled = self.labelled(stamp, &image);
         self.frames.push(ColorFrameResult {
             stamp,
             pose: outcome.estimate.pose,
-            fix: outcome.fix,
+            status: outcome.status,
             odometry: self.odometry,
             effective_particles: outcome.effective_particles,
             n_particles: outcome.n_particles,
@@ -212,10 +214,10 @@ impl ColorSystem {
     ) -> anyhow::Result<wayfix_color_model::FrameOutcome> {
         let localizer = match &mut self.localizer {
             Some(localizer) => localizer,
-            none => none.insert(ColorLocalizer::new(
+            none => none.insert(ColorLocalizer::with_models(
                 Arc::clone(&self.map),
                 PinholeCamera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
-                self.bank.clone(),
+                (self.bank.clone(), self.params.localizer.odometry, self.params.likelihood()),
                 &start(self.start, &self.params)?,
                 self.params.localizer,
                 &mut self.rng,

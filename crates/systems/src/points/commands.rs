@@ -9,7 +9,7 @@ use super::RobotTimingParams;
 ///
 /// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `turn_command_time_loss`, whichever
 /// turns less: a base that takes commands in its own rhythm loses a little of every turn. With both zero a command simply
-/// holds until the next. No command holds longer than `velocity_hold`; after that the motion is unknown.
+/// holds until the next. No command holds longer than `velocity_timeout`; after that the motion is unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Commands {
     delay: i128,
@@ -25,7 +25,7 @@ impl Commands {
         Self {
             delay: nanoseconds(robot.command_delay),
             time_loss: nanoseconds(robot.turn_command_time_loss),
-            hold: nanoseconds(robot.velocity_hold),
+            hold: nanoseconds(robot.velocity_timeout),
             rows: VecDeque::new(),
         }
     }

@@ -221,10 +221,10 @@ impl PointFrontEnd {
         if seconds <= 0.0 {
             return Ok(());
         }
-        let hold = self.params.robot.velocity_hold;
+        let hold = self.params.robot.velocity_timeout;
         estimator.events.warn(
             "motion_unknown",
-            format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_hold)"),
+            format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_timeout)"),
         );
         let unknown = MotionWithRangeScale(UnknownMotion(self.motion.unknown_motion(seconds)));
         estimator.filter.predict(&unknown, &()).map_err(|error| error.to_string())

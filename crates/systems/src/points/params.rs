@@ -8,7 +8,7 @@ use wayfix_slam_ekf::{
     SlamParams, VelocityMotion,
 };
 
-use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
+use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_TIMEOUT};
 
 /// Everything that can be set for EKF-SLAM on a log.
 ///
@@ -84,9 +84,8 @@ pub struct RobotTimingParams {
     pub command_delay: f64,
     /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
     pub turn_command_time_loss: f64,
-    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
-    pub velocity_hold: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
+    pub velocity_timeout: f64,
     /// Whether the sensor gives depth along its axis instead of distance.
     pub range_is_depth: bool,
     /// Standard deviation of the logarithm of the sensor's range scale, which is estimated; 0 when the scale is exact.
@@ -99,7 +98,7 @@ impl Default for RobotTimingParams {
             sensor_latency: 0.0,
             command_delay: 0.0,
             turn_command_time_loss: 0.0,
-            velocity_hold: VELOCITY_HOLD,
+            velocity_timeout: VELOCITY_TIMEOUT,
             range_is_depth: false,
             range_scale_sigma: 0.0,
         }
@@ -112,8 +111,7 @@ impl Default for RobotTimingParams {
 pub enum RobotProfile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
     Generic,
-    /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
-    /// for every detection.
+    /// The simulated range-bearing logs for comparing programs: 0.02 m, 0.005 rad per increment; 0.05 m, 0.01 rad per detection.
     RangeBearing,
     /// The truck of the Victoria Park set: a car with a laser that finds tree trunks.
     VictoriaPark,
@@ -152,7 +150,7 @@ impl PointSlamParams {
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 3,
+                    min_detections: 3,
                     max_missed: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
@@ -203,7 +201,7 @@ impl PointSlamParams {
                     ..JointCompatibilityParams::default()
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 8,
+                    min_detections: 8,
                     max_missed: Some(5),
                     min_detection_rate: 0.4,
                     ..LandmarkConfirmationParams::default()
@@ -217,7 +215,7 @@ impl PointSlamParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
                     turn_command_time_loss: 0.04,
-                    velocity_hold: VELOCITY_HOLD,
+                    velocity_timeout: VELOCITY_TIMEOUT,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,
                 },
@@ -252,7 +250,7 @@ impl PointSlamParams {
                     ..JointCompatibilityParams::default()
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
-                    n_detections: 8,
+                    min_detections: 8,
                     max_missed: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
@@ -265,8 +263,7 @@ impl PointSlamParams {
     /// Parameters from TOML text; what it does not name keeps the default of the profile it names, else of `profile`.
     ///
     /// # Errors
-    /// When the text is not TOML, a key is unknown or a value has the wrong type. Ranges are checked by
-    /// [`validated`](Self::validated).
+    /// When the text is not TOML, a key is unknown or a value has the wrong type. [`Self::validated`] checks ranges.
     pub fn from_toml(text: &str, profile: RobotProfile) -> Result<Self, toml::de::Error> {
         #[derive(Deserialize)]
         struct Named {
@@ -311,7 +308,7 @@ mod tests {
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
             ("sensor = 3", "`sensor`"),
             ("[filter]\noutlier_rule = 'ignore'", "`filter.outlier_rule`"),
-            ("[filter.confirmation]\nn_detections = -1", "`filter.confirmation.n_detections`"),
+            ("[filter.confirmation]\nmin_detections = -1", "`filter.confirmation.min_detections`"),
             ("[sensor", "line 1"),
         ] {
             assert!(error(text).contains(named), "{text}: {}", error(text));

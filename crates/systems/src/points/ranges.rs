@@ -45,12 +45,12 @@ impl PointSlamParams {
         let nearest_own_range_sigma =
             correlated_noise.independent_range_sigma + correlated_noise.independent_range_sigma_per_meter;
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
-        let times_seen = |confirmation: &LandmarkConfirmationParams| confirmation.n_detections as f64;
+        let times_seen = |confirmation: &LandmarkConfirmationParams| confirmation.min_detections as f64;
         for (name, value, (range, words)) in [
             number!(robot.sensor_latency, DELAY),
             number!(robot.command_delay, DELAY),
             number!(robot.turn_command_time_loss, DELAY),
-            number!(robot.velocity_hold, NOT_NEGATIVE),
+            number!(robot.velocity_timeout, NOT_NEGATIVE),
             number!(robot.range_scale_sigma, NOT_NEGATIVE),
             number!(mounting.sensor_x, PLACE),
             number!(mounting.sensor_y, PLACE),
@@ -86,9 +86,9 @@ impl PointSlamParams {
             number!(velocity_noise.speed_loss_in_turns, NOT_NEGATIVE),
             number!(filter.confirmation.min_detection_rate, SHARE),
             number!(unlabelled_confirmation.min_detection_rate, SHARE),
-            ("filter.confirmation.n_detections", times_seen(&filter.confirmation), TIMES_SEEN),
+            ("filter.confirmation.min_detections", times_seen(&filter.confirmation), TIMES_SEEN),
             number!(filter.confirmation.restart_nis, THRESHOLD),
-            ("unlabelled_confirmation.n_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
+            ("unlabelled_confirmation.min_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
             number!(unlabelled_confirmation.restart_nis, THRESHOLD),
         ]
         .into_iter()

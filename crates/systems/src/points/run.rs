@@ -113,8 +113,7 @@ impl PointRun {
     }
 }
 
-/// Metres of the path whose fit to the true positions gives the start pose: long against the errors of the fixes, short against those of
-/// the path.
+/// Metres of the path whose fit to the true positions gives the start pose: long against the errors of the fixes, short against those of it.
 const START_LENGTH: f64 = 40.0;
 
 /// The start from which the first metres of a run fit the true positions best; the origin when there are none.

@@ -7,7 +7,7 @@ use wayfix_sensor_log::{Stamp, Velocity};
 pub const FASTEST: f64 = 1e3;
 
 /// Default time after its stamp for which a velocity holds, s: the command time-out of ROS 2 navigation.
-pub const VELOCITY_HOLD: f64 = 1.0;
+pub const VELOCITY_TIMEOUT: f64 = 1.0;
 
 /// Accepts a velocity that is finite and at most [`FASTEST`].
 ///

@@ -41,8 +41,7 @@ impl MotionStatistics {
         self.covariance(self.squared_rates, self.seconds, seconds)
     }
 
-    /// Covariance of a motion interpolated between two odometry records, `before` seconds after one and `after` seconds before the
-    /// other.
+    /// Covariance of a motion interpolated `before` seconds after one odometry record and `after` seconds before the next.
     ///
     /// A constant acceleration $`a`$ deviates from linear interpolation by $`\tfrac{1}{2} a\, t_1 t_2`$; $`a`$ is the RMS acceleration so far.
     pub fn interpolation(&self, before: f64, after: f64) -> Matrix3<f64> {

@@ -1,7 +1,7 @@
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::VELOCITY_HOLD;
+use super::VELOCITY_TIMEOUT;
 
 /// A kind of record, for messages.
 pub type NamedRecordKind<'a> = (&'a str, fn(&RecordData) -> bool);
@@ -22,7 +22,7 @@ pub fn check_overlap(
 ) -> Result<()> {
     let (Some(a), Some(b)) = (span(records, first.1), span(records, second.1)) else { return Ok(()) };
     // A velocity also covers the time after it.
-    if a.0.seconds_since(b.1) <= VELOCITY_HOLD && b.0.seconds_since(a.1) <= VELOCITY_HOLD {
+    if a.0.seconds_since(b.1) <= VELOCITY_TIMEOUT && b.0.seconds_since(a.1) <= VELOCITY_TIMEOUT {
         return Ok(());
     }
     bail!(

@@ -29,8 +29,8 @@ impl DescriptorKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::MeanVar => "mean_std",
-            Self::Fft6 => "fft6",
-            Self::Hist6 => "hist6",
+            Self::Fft6 => "fourier6",
+            Self::Hist6 => "dominant_grays",
             Self::Joined => "joined",
         }
     }

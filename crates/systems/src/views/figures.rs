@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use wayfix_condensation::{NavigationOutcome, StateSpace};
+use wayfix_condensation::{DiscreteStateSpace, NavigationOutcome};
 
 use super::{ViewTrial, ViewsRun};
 use wayfix_evaluation::{

@@ -22,8 +22,8 @@ impl LightNormalization {
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "unnormalized",
-            Self::WholeScene => "whole_scene",
-            Self::Online => "online",
+            Self::WholeScene => "scene_normalized",
+            Self::Online => "light_estimated",
         }
     }
 

@@ -3,8 +3,9 @@ use std::{cell::Cell, sync::Arc};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
-    AppearanceModel, DescriptorTable, GridMove, NavigationEnvironment, NavigationOutcome, NavigationReport,
-    Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateSpace, ViewGrid, ViewLocalizer,
+    AppearanceModel, DescriptorTable, DiscreteStateSpace, GridMove, NavigationEnvironment, NavigationOutcome,
+    NavigationReport, Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, ViewGrid,
+    ViewLocalizer,
 };
 
 use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams};

@@ -202,7 +202,7 @@ impl WallFrontEnd {
             .then(&self.params.increment_noise, estimator.filter.robot().heading_drift, increment)
             .with_added_covariance(error);
         estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
-        if *unknown_seconds > self.params.velocity_hold {
+        if *unknown_seconds > self.params.velocity_timeout {
             estimator.events.warn(
                 "motion_unknown",
                 "odometry is missing for some time: the motion there comes from scan matching alone",
@@ -212,7 +212,7 @@ impl WallFrontEnd {
 
     /// Moves the robot on with the velocity that holds.
     fn advance_to(&mut self, stamp: Stamp, estimator: &mut Walls) {
-        if let Some(motion) = self.odometry.held_until(stamp, self.params.velocity_hold)
+        if let Some(motion) = self.odometry.held_until(stamp, self.params.velocity_timeout)
             && self.odometry.has_started()
         {
             self.move_by(&motion, estimator);

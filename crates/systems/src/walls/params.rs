@@ -12,7 +12,7 @@ use wayfix_slam_ekf::{
 use crate::{
     settings::number,
     slam::{AssociationRule, increment_numbers},
-    system::VELOCITY_HOLD,
+    system::VELOCITY_TIMEOUT,
 };
 
 /// Everything that can be set for EKF-SLAM with walls.
@@ -54,9 +54,8 @@ pub struct WallSlamParams {
     pub sensor: WallSensor,
     /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
     pub heading_drift_sigma: f64,
-    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
-    /// navigation.
-    pub velocity_hold: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
+    pub velocity_timeout: f64,
     /// By how much odometry is stamped later than scans that show the same, s; negative where it is stamped earlier.
     pub odometry_delay: f64,
     /// Whether the motion of the laser during a scan is taken out, where the log says the time from beam to beam.
@@ -122,7 +121,7 @@ impl Default for WallSlamParams {
             min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
-            velocity_hold: VELOCITY_HOLD,
+            velocity_timeout: VELOCITY_TIMEOUT,
             odometry_delay: 0.0,
             deskew_scans: true,
             increment_noise: OdometryMotion {
@@ -134,7 +133,7 @@ impl Default for WallSlamParams {
             filter: SlamParams {
                 linearization_point: LinearizationPoint::FirstEstimates,
                 confirmation: LandmarkConfirmationParams {
-                    n_detections: 3,
+                    min_detections: 3,
                     max_missed: Some(10),
                     ..LandmarkConfirmationParams::default()
                 },
@@ -191,7 +190,7 @@ impl WallSlamParams {
             number!(odometry_noise_per_scan.translation_sigma, NOT_NEGATIVE),
             number!(odometry_noise_per_scan.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
-            ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
+            ("velocity_timeout", self.velocity_timeout, NOT_NEGATIVE),
         ]
         .into_iter()
         .chain(increment_numbers(&self.increment_noise).map(|(name, value)| (name, value, NOT_NEGATIVE)))

@@ -38,7 +38,7 @@ pub struct ContourTrackerParams {
     pub n_samples: usize,
     /// Share of the samples that start from the colours found in the last picture and not from the samples of before; 0 is plain
     /// CONDENSATION. Default 0.5.
-    pub anchored_share: f64,
+    pub share_from_last_measurement: f64,
     /// Share of the velocity that the colour state keeps, from 0 to 1. Default 0.5.
     pub velocity_retention: f64,
     /// Noise of the colour state per picture: centroid (3), axis deviations (3), in units of the colour space, and angles (2) in radians.
@@ -46,7 +46,7 @@ pub struct ContourTrackerParams {
     pub color_state_noise: [f64; 8],
     /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with
     /// a colour in it, as the paper does. Default 1.
-    pub background_odds: f64,
+    pub min_target_to_background_ratio: f64,
     /// Weight of the previous colours in the set of colours, adapted to the change of light, so that a part of the target missed by one
     /// contour is kept. 0 drops them, as in the paper. Default 0.8.
     pub previous_colors_weight: f64,
@@ -68,7 +68,7 @@ pub struct ContourTrackerParams {
     /// Parameters of the snake fit.
     pub snake: SnakeParams,
     /// Distance from the segmented boundary within which the final contour searches for an image edge, in pixels; 0 disables it. Default 2.
-    pub band_radius: usize,
+    pub edge_search_distance: usize,
     /// The change of colour over two pixels that is an edge, in grey values (root of the sum of squares over the channels). Default 20.
     pub edge_contrast: f64,
     /// Below this quality the target is lost. Default 0.5.
@@ -87,10 +87,10 @@ impl Default for ContourTrackerParams {
             color_space: ColorSpace::Opponent,
             color_bins: [32; 3],
             n_samples: 100,
-            anchored_share: 0.5,
+            share_from_last_measurement: 0.5,
             velocity_retention: 0.5,
             color_state_noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
-            background_odds: 1.0,
+            min_target_to_background_ratio: 1.0,
             previous_colors_weight: 0.8,
             max_colors: 512,
             quality_weights: [1.0, 1.0, 0.5],
@@ -100,7 +100,7 @@ impl Default for ContourTrackerParams {
             euler_number_range: 10.0,
             morphology_radius: 1,
             snake: SnakeParams::default(),
-            band_radius: 2,
+            edge_search_distance: 2,
             edge_contrast: 20.0,
             lost_below: 0.5,
             found_above: 0.75,
@@ -114,11 +114,11 @@ impl ContourTrackerParams {
     /// large as the dynamics and a hundred samples can fill.
     pub fn as_published() -> Self {
         Self {
-            background_odds: 0.0,
+            min_target_to_background_ratio: 0.0,
             previous_colors_weight: 0.0,
             area_extrapolation: 1.0,
             mean_area_weight: 0.0,
-            anchored_share: 0.0,
+            share_from_last_measurement: 0.0,
             color_bins: [16; 3],
             ..Self::default()
         }
@@ -134,7 +134,7 @@ impl ContourTrackerParams {
         count("max_colors", self.max_colors, 1_000_000)?;
         count("n_search_samples", self.n_search_samples, 1_000_000)?;
         for (what, value) in [
-            ("anchored_share", self.anchored_share),
+            ("share_from_last_measurement", self.share_from_last_measurement),
             ("previous_colors_weight", self.previous_colors_weight),
             ("mean_area_weight", self.mean_area_weight),
             ("lost_below", self.lost_below),
@@ -143,7 +143,7 @@ impl ContourTrackerParams {
             probability(what, value)?;
         }
         for (what, value) in [
-            ("background_odds", self.background_odds),
+            ("min_target_to_background_ratio", self.min_target_to_background_ratio),
             ("edge_contrast", self.edge_contrast),
             ("area_extrapolation", self.area_extrapolation),
         ] {
@@ -159,9 +159,10 @@ impl ContourTrackerParams {
         for value in self.quality_weights {
             checked("mu", value, value >= 0.0, "not negative")?;
         }
-        for (what, radius) in
-            [("morphology_radius", self.morphology_radius), ("band_radius", self.band_radius)]
-        {
+        for (what, radius) in [
+            ("morphology_radius", self.morphology_radius),
+            ("edge_search_distance", self.edge_search_distance),
+        ] {
             checked(what, radius as f64, radius <= 100, "at most 100")?;
         }
         self.snake.validate()

@@ -22,7 +22,7 @@ impl Scene<'_> {
     ) -> Result<Option<ColorCloud>, TrackingError> {
         let inside = self.interior(candidate, mask)?;
         let n_expected = LEAST_SHARE * self.expected_area;
-        let plain = self.params.background_odds == 0.0;
+        let plain = self.params.min_target_to_background_ratio == 0.0;
         let shares = self.region.shares(&inside);
         let is_open = candidate.agreement.affine >= SEEN_ALL_ROUND;
         let near = set.dilated(self.quantizer);

@@ -13,10 +13,11 @@ impl Candidate {
     /// is unchanged if there is too little of an edge, or if the area would agree less.
     pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &PixelMask) -> Self {
         let params = scene.params;
-        if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
+        if params.edge_search_distance == 0 || params.cues != TrackingCues::ColorAndShape {
             return self;
         }
-        let band = mask.boundary().dilated(StructuringElement::Square { radius: params.band_radius });
+        let band =
+            mask.boundary().dilated(StructuringElement::Square { radius: params.edge_search_distance });
         let edges =
             ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
         // The snake is where it belongs but for the width of the band.

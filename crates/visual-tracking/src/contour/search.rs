@@ -37,7 +37,7 @@ impl<'a> Scene<'a> {
         let region = Region::whole(picture, quantizer)?;
         let everywhere = PixelMask::full(picture.width() as usize, picture.height() as usize)?;
         let mut background = region.shares(&everywhere);
-        background.iter_mut().for_each(|share| *share *= params.background_odds as f32);
+        background.iter_mut().for_each(|share| *share *= params.min_target_to_background_ratio as f32);
         Ok(Self {
             params,
             quantizer,

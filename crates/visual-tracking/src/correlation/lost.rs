@@ -57,7 +57,7 @@ impl CorrelationTracker {
         around: &WindowSample,
     ) -> Option<(Pose, WindowSample, FilterResponse)> {
         let response = self.recognizer.response(filter, around);
-        if Peak::of(&response, SIDE).peak_to_sidelobe < self.params.no_evidence_below {
+        if Peak::of(&response, SIDE).peak_to_sidelobe < self.params.no_evidence_below_psr {
             return None;
         }
         let pose = self.shifted(picture, pose, &response);

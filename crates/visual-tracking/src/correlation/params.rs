@@ -15,7 +15,7 @@ use crate::error::{checked, probability};
 )]
 pub struct CorrelationTrackerParams {
     /// Side of the search window, in sides of a square of the target's area. Default 4.
-    pub padding: f64,
+    pub search_window_scale: f64,
     /// Width of the response that is desired at the target, in sides of the target. Default 1/16.
     pub response_width: f64,
     /// Weight of the previous filter in learning, in units of the energy of an image. Default 2.5.
@@ -40,7 +40,7 @@ pub struct CorrelationTrackerParams {
     pub scale_filter_rate: f64,
     /// Peak-to-sidelobe ratio, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
     /// Default 10.
-    pub no_evidence_below: f64,
+    pub no_evidence_below_psr: f64,
     /// Pictures in a row without evidence after which the target is lost. Default 8.
     pub lost_after: usize,
     /// Standing out above which a picture is learned. Default 12.
@@ -60,7 +60,7 @@ pub struct CorrelationTrackerParams {
 impl Default for CorrelationTrackerParams {
     fn default() -> Self {
         Self {
-            padding: 4.0,
+            search_window_scale: 4.0,
             response_width: 0.0625,
             previous_filter_weight: 2.5,
             domain_agreement_weight: 0.2,
@@ -72,7 +72,7 @@ impl Default for CorrelationTrackerParams {
             n_scale_hypotheses: 17,
             scale_step: 1.03,
             scale_filter_rate: 0.025,
-            no_evidence_below: 10.0,
+            no_evidence_below_psr: 10.0,
             lost_after: 8,
             learn_above_psr: 12.0,
             recognize_above_psr: 15.0,
@@ -87,7 +87,12 @@ impl Default for CorrelationTrackerParams {
 impl CorrelationTrackerParams {
     pub(super) fn validate(&self) -> Result<(), TrackingError> {
         let positive = |what, value: f64| checked(what, value, value > 0.0 && value.is_finite(), "positive");
-        checked("padding", self.padding, (1.5..=8.0).contains(&self.padding), "between 1.5 and 8")?;
+        checked(
+            "search_window_scale",
+            self.search_window_scale,
+            (1.5..=8.0).contains(&self.search_window_scale),
+            "between 1.5 and 8",
+        )?;
         positive("response_width", self.response_width)?;
         positive("domain_agreement_weight", self.domain_agreement_weight)?;
         positive("motion_sigma", self.motion_sigma)?;
@@ -115,7 +120,7 @@ impl CorrelationTrackerParams {
         let step = (1.001..=1.5).contains(&self.scale_step);
         checked("scale_step", self.scale_step, step, "between 1.001 and 1.5")?;
         for (what, value) in [
-            ("no_evidence_below", self.no_evidence_below),
+            ("no_evidence_below_psr", self.no_evidence_below_psr),
             ("learn_above_psr", self.learn_above_psr),
             ("recognize_above_psr", self.recognize_above_psr),
         ] {

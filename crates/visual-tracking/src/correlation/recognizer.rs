@@ -37,7 +37,7 @@ const MIDDLE: f64 = 2.0;
 impl Recognizer {
     /// For a target of `size` pixels in pictures like `picture`.
     pub(super) fn new(picture: &RgbImage, size: [f64; 2], params: &CorrelationTrackerParams) -> Self {
-        let window = Window::around(size, params.padding);
+        let window = Window::around(size, params.search_window_scale);
         let is_grey = rgb_pixels(picture).iter().all(|&[r, g, b]| r == g && g == b);
         let color = if is_grey { 0.0 } else { params.color_channel_share as f32 };
         let grey = params.gray_channel_share as f32;

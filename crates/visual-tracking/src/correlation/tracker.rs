@@ -159,7 +159,8 @@ impl CorrelationTracker {
         let evidence = self.recognizer.evidence(&self.current, &sample);
         let is_unlike = !self.recognized(trust) && !self.has_target_colors(&sample);
         // a dissimilar result needs a higher response
-        let least = if is_unlike { self.params.recognize_above_psr } else { self.params.no_evidence_below };
+        let least =
+            if is_unlike { self.params.recognize_above_psr } else { self.params.no_evidence_below_psr };
         if evidence.peak_to_sidelobe < least {
             self.n_without_evidence += 1;
             self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after);

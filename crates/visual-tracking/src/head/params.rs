@@ -26,7 +26,7 @@ pub struct HeadTrackerParams {
     /// Intersection above which they do. Default 0.6.
     pub adapt_above_intersection: f64,
     /// Intersection below which there is no evidence of the head. Default 0.3.
-    pub no_evidence_below: f64,
+    pub no_evidence_below_intersection: f64,
     /// Pictures in a row without evidence after which the head is lost. Default 8.
     pub lost_after: usize,
 }
@@ -41,7 +41,7 @@ impl Default for HeadTrackerParams {
             gradient_weight: 0.25,
             color_adaptation_rate: 0.1,
             adapt_above_intersection: 0.6,
-            no_evidence_below: 0.3,
+            no_evidence_below_intersection: 0.3,
             lost_after: 8,
         }
     }
@@ -50,7 +50,7 @@ impl Default for HeadTrackerParams {
 impl HeadTrackerParams {
     /// The published method: colours and gradient count equally [Birchfield 1998], and a head is never lost.
     pub fn as_published() -> Self {
-        Self { gradient_weight: 0.5, no_evidence_below: 0.0, ..Self::default() }
+        Self { gradient_weight: 0.5, no_evidence_below_intersection: 0.0, ..Self::default() }
     }
 
     pub(super) fn validate(&self) -> Result<(), TrackingError> {
@@ -66,7 +66,7 @@ impl HeadTrackerParams {
             ("gradient weight", self.gradient_weight),
             ("color_adaptation_rate", self.color_adaptation_rate),
             ("intersection to adapt", self.adapt_above_intersection),
-            ("intersection for doubt", self.no_evidence_below),
+            ("intersection for doubt", self.no_evidence_below_intersection),
         ] {
             probability(what, value)?;
         }

@@ -169,7 +169,7 @@ impl<S: ScaleSource> HeadTracker<S> {
         if is_lost && candidate.color < self.params.adapt_above_intersection {
             return Ok(());
         }
-        if candidate.color < self.params.no_evidence_below {
+        if candidate.color < self.params.no_evidence_below_intersection {
             self.state.n_without_evidence += 1;
             self.state.is_lost = self.state.n_without_evidence > self.params.lost_after;
             self.state.velocity = [0; 2];

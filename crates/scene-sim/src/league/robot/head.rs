@@ -43,7 +43,7 @@ impl Head {
             target: Target::Angles(Vector2::zeros()),
             left_s: 0.0,
             n_looks: Vec::new(),
-            biases: [(); 3].map(|()| params.bias_rad * normal(rng)),
+            biases: [(); 3].map(|()| params.angle_bias_sigma_rad * normal(rng)),
         }
     }
 
@@ -81,7 +81,7 @@ impl Head {
 
     /// The rotation according to the joint angles.
     pub(super) fn reported_rotation(&self) -> UnitQuaternion<f64> {
-        let old = self.angles - self.rates * self.params.lag_s;
+        let old = self.angles - self.rates * self.params.angle_latency_s;
         let quantum = self.params.angle_resolution_rad;
         let said = old.map(|angle| if quantum > 0.0 { (angle / quantum).round() * quantum } else { angle });
         space::yaw(said.x) * space::pitch(said.y)

@@ -92,9 +92,9 @@ impl LeggedRobot {
     pub fn camera_pose(&self) -> Pose3<f64> {
         let (sin, _) = libm::sincos(self.phase);
         let (sin_twice, cos_twice) = libm::sincos(2.0 * self.phase);
-        let lift = Vector3::z() * (self.strength * self.sway.height_m * cos_twice);
-        let roll = self.slow[0] + self.strength * self.sway.roll_rad * sin;
-        let pitch = self.slow[1] + self.strength * self.sway.pitch_rad * sin_twice;
+        let lift = Vector3::z() * (self.strength * self.sway.height_amplitude_m * cos_twice);
+        let roll = self.slow[0] + self.strength * self.sway.roll_amplitude_rad * sin;
+        let pitch = self.slow[1] + self.strength * self.sway.pitch_amplitude_rad * sin_twice;
         let body = Pose3 { translation: lift, rotation: space::pitch(pitch) * space::roll(roll) };
         let camera = body.compose(&mounted(self.head.true_rotation()));
         space::on_ground(&self.walker.pose).compose(&camera)
@@ -120,7 +120,7 @@ impl LeggedRobot {
     fn wobble(&mut self, streams: &mut RandomStreams) {
         let rng = streams.of(RandomStreamPurpose::Joints);
         for (slow, process) in self.slow.iter_mut().zip(&mut self.unsteady) {
-            *slow = self.sway.tilt_error_rad * process.advance(STEP_S, rng);
+            *slow = self.sway.tilt_error_sigma_rad * process.advance(STEP_S, rng);
         }
     }
 }

@@ -37,13 +37,13 @@ pub struct BodySwayParams {
     /// Length of one stride, seconds. Default 0.5.
     pub stride_s: f64,
     /// Amplitude of the roll at full speed, radians. Default 1°.
-    pub roll_rad: f64,
+    pub roll_amplitude_rad: f64,
     /// Amplitude of the pitch at full speed, radians. Default 0.7°.
-    pub pitch_rad: f64,
+    pub pitch_amplitude_rad: f64,
     /// Amplitude of the height at full speed, metres. Default 0.004.
-    pub height_m: f64,
+    pub height_amplitude_m: f64,
     /// σ of a slow error of roll and pitch, walking or not, radians: the carpet is soft. Default 0.3°.
-    pub tilt_error_rad: f64,
+    pub tilt_error_sigma_rad: f64,
 }
 
 /// The head: pan and tilt, and a camera in its nose.
@@ -60,9 +60,9 @@ pub struct RobotHeadParams {
     /// Resolution of the reported angles, radians; 0 for none. Default 0.25°.
     pub angle_resolution_rad: f64,
     /// Delay of reported angles, s. Default 0.008.
-    pub lag_s: f64,
+    pub angle_latency_s: f64,
     /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.35°.
-    pub bias_rad: f64,
+    pub angle_bias_sigma_rad: f64,
 }
 
 /// Odometry from the commanded steps.
@@ -96,10 +96,10 @@ impl Default for LeggedRobotParams {
             },
             sway: BodySwayParams {
                 stride_s: 0.5,
-                roll_rad: degrees(1.0),
-                pitch_rad: degrees(0.7),
-                height_m: 0.004,
-                tilt_error_rad: degrees(0.3),
+                roll_amplitude_rad: degrees(1.0),
+                pitch_amplitude_rad: degrees(0.7),
+                height_amplitude_m: 0.004,
+                tilt_error_sigma_rad: degrees(0.3),
             },
             head: RobotHeadParams {
                 speed_radps: 2.0,
@@ -107,8 +107,8 @@ impl Default for LeggedRobotParams {
                 mean_gaze_s: 0.5,
                 downward_gaze_share: 0.15,
                 angle_resolution_rad: degrees(0.25),
-                lag_s: 0.008,
-                bias_rad: degrees(0.35),
+                angle_latency_s: 0.008,
+                angle_bias_sigma_rad: degrees(0.35),
             },
             odometry: GaitOdometryParams {
                 step_scale: [0.8, 1.1],
@@ -137,17 +137,17 @@ impl LeggedRobotParams {
         check::not_negative("margin (m)", walk.board_margin_m)?;
         check::at_most("margin (m)", walk.board_margin_m, 1.0, "at most 1")?;
         check::positive("stride (s)", sway.stride_s)?;
-        check::not_negative("roll (rad)", sway.roll_rad)?;
-        check::not_negative("pitch (rad)", sway.pitch_rad)?;
-        check::not_negative("swaying height (m)", sway.height_m)?;
-        check::not_negative("slow roll and pitch (rad)", sway.tilt_error_rad)?;
+        check::not_negative("roll (rad)", sway.roll_amplitude_rad)?;
+        check::not_negative("pitch (rad)", sway.pitch_amplitude_rad)?;
+        check::not_negative("swaying height (m)", sway.height_amplitude_m)?;
+        check::not_negative("slow roll and pitch (rad)", sway.tilt_error_sigma_rad)?;
         check::positive("speed of the head (rad/s)", head.speed_radps)?;
         check::not_negative("furthest pan (rad)", head.pan_limit_rad)?;
         check::not_negative("length of a look (s)", head.mean_gaze_s)?;
         check::share("looks at the carpet", head.downward_gaze_share)?;
         check::not_negative("resolution of the joints (rad)", head.angle_resolution_rad)?;
-        check::not_negative("lag of the joints (s)", head.lag_s)?;
-        check::not_negative("error of the joints (rad)", head.bias_rad)?;
+        check::not_negative("latency of the angles (s)", head.angle_latency_s)?;
+        check::not_negative("error of the joints (rad)", head.angle_bias_sigma_rad)?;
         for scale in [odometry.step_scale, odometry.turn_scale].concat() {
             check::positive("scale of the odometry", scale)?;
         }

@@ -126,7 +126,7 @@ impl Errors {
     }
 
     fn range_at(&self, range: f64, params: &RangeBearingParams) -> f64 {
-        params.range_noise.at(range) * self.white.0 + params.drift.range.at(range) * self.drift.0
+        params.range_noise.at(range) * self.white.0 + params.drift.range_sigma.at(range) * self.drift.0
     }
 
     fn bearing(&self, params: &RangeBearingParams) -> f64 {

@@ -6,7 +6,7 @@ use crate::{SimulationError, check};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrelatedErrorParams {
     /// Standard deviation of the range's part. Default 0.
-    pub range: RangeDependentSigma,
+    pub range_sigma: RangeDependentSigma,
     /// Standard deviation of the bearing's part, radians. Default 0.
     pub bearing_sigma_rad: f64,
     /// Correlation time, seconds. Default 5.
@@ -15,13 +15,13 @@ pub struct CorrelatedErrorParams {
 
 impl Default for CorrelatedErrorParams {
     fn default() -> Self {
-        Self { range: RangeDependentSigma::default(), bearing_sigma_rad: 0.0, correlation_time_s: 5.0 }
+        Self { range_sigma: RangeDependentSigma::default(), bearing_sigma_rad: 0.0, correlation_time_s: 5.0 }
     }
 }
 
 impl CorrelatedErrorParams {
     pub(super) fn validate(&self) -> Result<(), SimulationError> {
-        self.range.validate()?;
+        self.range_sigma.validate()?;
         check::not_negative("σ of the bearing's drift (rad)", self.bearing_sigma_rad)?;
         check::not_negative("correlation time of the drift (s)", self.correlation_time_s)
     }

@@ -16,7 +16,7 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
 )]
 pub struct LandmarkConfirmationParams {
     /// Scans in which it must be detected, the first included; 1 confirms every landmark at its first detection.
-    pub n_detections: usize,
+    pub min_detections: usize,
     /// Number of consecutive misses after which a tentative landmark is removed; never, if not given. Landmarks with an identity that the sensor
     /// reads do not need it; landmarks that data association starts do.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
@@ -32,7 +32,7 @@ pub struct LandmarkConfirmationParams {
 impl Default for LandmarkConfirmationParams {
     /// Two observations that agree.
     fn default() -> Self {
-        Self { n_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
+        Self { min_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
     }
 }
 
@@ -41,7 +41,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     pub(in crate::filter) fn is_confirmed(&self, slot: &Slot<M::Landmark>) -> bool {
-        slot.n_detections >= self.params.confirmation.n_detections
+        slot.n_detections >= self.params.confirmation.min_detections
     }
 
     pub(in crate::filter) fn is_tentative(&self, id: LandmarkId) -> bool {
@@ -74,7 +74,10 @@ where
     /// Removes landmarks that were in view but not detected: tentative ones in time, confirmed ones with too low a detection rate.
     pub(in crate::filter) fn remove_undetected(&mut self) {
         let LandmarkConfirmationParams {
-            n_detections, max_missed: Some(max_missed), min_detection_rate, ..
+            min_detections,
+            max_missed: Some(max_missed),
+            min_detection_rate,
+            ..
         } = self.params.confirmation
         else {
             return;
@@ -89,7 +92,7 @@ where
             slot.n_missed_in_a_row += usize::from(is_missed);
             slot.n_missed += usize::from(is_missed);
             let share = slot.n_detections as f64 / (slot.n_detections + slot.n_missed) as f64;
-            let is_overdue = if slot.n_detections < n_detections {
+            let is_overdue = if slot.n_detections < min_detections {
                 slot.n_missed_in_a_row > max_missed
             } else {
                 slot.n_missed > max_missed && share < min_detection_rate

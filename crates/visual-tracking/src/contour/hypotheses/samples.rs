@@ -39,7 +39,7 @@ impl Samples {
     ) -> Result<Vec<ColorState>, TrackingError> {
         let mut particles = self.particles.clone();
         particles.resample(&SystematicResampler, params.n_samples, rng)?;
-        let n_anchored = (params.anchored_share * params.n_samples as f64).round() as usize;
+        let n_anchored = (params.share_from_last_measurement * params.n_samples as f64).round() as usize;
         particles.states_mut().iter_mut().take(n_anchored).for_each(|state| *state = self.measured);
         particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);
         let mut states = particles.states().to_vec();

@@ -1,0 +1,73 @@
+use super::{
+    FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch, LikelihoodModel, PixelFrame,
+    PixelLikelihoodParams, PoseView,
+};
+use crate::{ColorModelError, LightingTracker};
+
+/// The likelihoods of this crate, to choose from at run time.
+///
+/// ```
+/// use wayfix_color_model::{ImageLikelihood, PixelLikelihoodParams};
+/// assert_eq!(ImageLikelihood::default(), ImageLikelihood::Pixels(PixelLikelihoodParams::default()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImageLikelihood {
+    /// All pixels that the map shows. [Schulz & Fox 2004, Eq. 16]
+    Pixels(PixelLikelihoodParams),
+    /// Bearings and areas of blobs. [Schulz & Fox 2004, VI]
+    Features(FeatureLikelihoodParams),
+}
+
+impl Default for ImageLikelihood {
+    fn default() -> Self {
+        Self::Pixels(PixelLikelihoodParams::default())
+    }
+}
+
+/// What is computed for each frame, or for each thread, under either likelihood.
+pub enum EitherLikelihood<P, F> {
+    /// Of pixels.
+    Pixels(P),
+    /// Of features.
+    Features(F),
+}
+
+impl LikelihoodModel for ImageLikelihood {
+    type Frame = EitherLikelihood<PixelFrame, FeatureLikelihood>;
+    type Scratch = EitherLikelihood<JointScratch, FeatureLikelihood>;
+
+    fn frame(&self, context: &FrameContext<'_>) -> Result<Self::Frame, ColorModelError> {
+        Ok(match self {
+            Self::Pixels(pixels) => EitherLikelihood::Pixels(pixels.frame(context)?),
+            Self::Features(features) => EitherLikelihood::Features(features.frame(context)?),
+        })
+    }
+
+    fn scratch(&self, frame: &Self::Frame) -> Self::Scratch {
+        match frame {
+            EitherLikelihood::Pixels(_) => EitherLikelihood::Pixels(JointScratch::new()),
+            EitherLikelihood::Features(features) => EitherLikelihood::Features(features.clone()),
+        }
+    }
+
+    fn log_likelihoods<T: LightingTracker>(
+        &self,
+        frame: &Self::Frame,
+        scratch: &mut Self::Scratch,
+        view: &PoseView<'_>,
+        light: &T,
+        log_likelihoods: &mut [f64],
+    ) {
+        use EitherLikelihood::{Features, Pixels};
+        match (self, frame, scratch) {
+            (Self::Pixels(params), Pixels(frame), Pixels(scratch)) => {
+                params.log_likelihoods(frame, scratch, view, light, log_likelihoods);
+            }
+            (Self::Features(params), Features(frame), Features(scratch)) => {
+                params.log_likelihoods(frame, scratch, view, light, log_likelihoods);
+            }
+            // A frame of another likelihood says nothing.
+            _ => log_likelihoods.fill(0.0),
+        }
+    }
+}
