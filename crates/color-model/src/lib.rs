@@ -25,8 +25,8 @@ pub use likelihood::{
     PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
-    CameraLocation, CameraNoise, CameraPoseError, ColorLocalizer, FrameOutcome, LocalizationStatus,
-    LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, SearchParams, Start,
+    CameraLocation, CameraNoise, CameraPoseError, ColorLocalizer, FrameOutcome, GlobalSearchParams,
+    LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
     KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,

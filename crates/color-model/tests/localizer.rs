@@ -7,19 +7,19 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::painted::{Scene, bank, camera_pose, mount};
 use wayfix_color_model::{
-    ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, ImageLikelihood,
-    LocalizationStatus, LocalizerParams, OdometryStep, SearchParams, Start, YuvImage,
+    ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, GlobalSearchParams,
+    ImageLikelihood, LocalizationStatus, LocalizerParams, OdometryStep, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 
 /// A tenth of the usual effort, for images of a quarter of the size.
 fn params() -> LocalizerParams {
-    let search = SearchParams {
+    let search = GlobalSearchParams {
         n_frames: 4,
         n_sampled_trajectories: 600,
         n_refined_places: 40,
-        ..SearchParams::default()
+        ..GlobalSearchParams::default()
     };
     LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
 }
@@ -79,7 +79,8 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
         // Half of the default effort: coarser, the first search may miss the peak.
-        let search = SearchParams { n_sampled_trajectories: 2000, n_refined_places: 80, ..params().search };
+        let search =
+            GlobalSearchParams { n_sampled_trajectories: 2000, n_refined_places: 80, ..params().search };
         let params = LocalizerParams { max_particles: 500, search, ..params() };
         let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
         let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
@@ -97,8 +98,10 @@ fn blobs_instead_of_pixels_correct_a_rough_start() {
     let body = Pose2::new(0.5, 0.2, 0.4);
     let (views, truth) = drive(&mut scene, body, 32, 8);
     let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let params =
-        LocalizerParams { search: SearchParams { n_sampled_trajectories: 0, ..params().search }, ..params() };
+    let params = LocalizerParams {
+        search: GlobalSearchParams { n_sampled_trajectories: 0, ..params().search },
+        ..params()
+    };
     let models = (bank(), params.odometry, ImageLikelihood::Features(FeatureLikelihoodParams::default()));
     let start = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
     let map = scene.map.clone();

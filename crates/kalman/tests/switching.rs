@@ -280,7 +280,7 @@ fn lights(n_histories: usize) -> JumpMarkovFilter<LinearMotion<f64, nalgebra::U1
     let prior = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(400.0)).unwrap();
     let bank =
         FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[prior(160.0), prior(40.0)]).unwrap();
-    let params = JumpMarkovFilterParams { n_histories, history_length: 40 };
+    let params = JumpMarkovFilterParams { n_histories, n_remembered_models: 40 };
     JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95).unwrap(), params).unwrap()
 }
 

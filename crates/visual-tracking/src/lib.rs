@@ -28,7 +28,7 @@ pub use color::{
     ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, CustomColorSpace, RowSpans,
     SlidingHistogram,
 };
-pub use contour::{ContourTracker, ContourTrackerParams, SegmentationAgreement, TrackingCues};
+pub use contour::{ColorHypothesisAgreement, ContourTracker, ContourTrackerParams, TrackingCues};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use distribution::{
     AffineColorMap, COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorStateVector, LearnedDynamics,

@@ -106,7 +106,7 @@ fn a_log_of_both_scan_messages_is_used_whole() {
     let scratch = Scratch::new();
     let (outcome, error) = path_error(&scratch, &("\u{feff}".to_owned() + &log(|k| k % 2 == 0)));
     assert!(error < PATH_BOUND_M, "{error} m");
-    assert_eq!((outcome.event("scan_matched"), outcome.event("log_problem")), (60, 0));
+    assert_eq!((outcome.event("keyframe_matched"), outcome.event("log_problem")), (60, 0));
 }
 
 #[test]

@@ -20,5 +20,5 @@ pub use color_localizer::ColorLocalizer;
 pub use estimate::PoseEstimate;
 pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};
 pub use outcome::{FrameOutcome, LocalizationStatus};
-pub use params::{LocalizerParams, SearchParams};
+pub use params::{GlobalSearchParams, LocalizerParams};
 pub use start::Start;

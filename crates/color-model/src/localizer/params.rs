@@ -25,7 +25,7 @@ pub struct LocalizerParams {
     /// Noise of the camera's pose on the body.
     pub camera: CameraNoise,
     /// Global search at the start and for relocalization.
-    pub search: SearchParams,
+    pub search: GlobalSearchParams,
     /// The change test between the present pose and the places that a search finds; off with `false_alarms_per_km` 0.
     pub relocalization: RelocalizationParams,
     /// Largest number of particles of a place; the smallest is half of it. Default 1000.
@@ -48,7 +48,7 @@ pub struct LocalizerParams {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct SearchParams {
+pub struct GlobalSearchParams {
     /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
     /// Default 16.
     pub n_frames: usize,
@@ -57,14 +57,20 @@ pub struct SearchParams {
     /// Number of places that are refined at first; it is halved three times. Default 100.
     pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
-    pub n_moves: u32,
+    pub n_first_round_moves: u32,
     /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
     pub interval: f64,
 }
 
-impl Default for SearchParams {
+impl Default for GlobalSearchParams {
     fn default() -> Self {
-        Self { n_frames: 16, n_sampled_trajectories: 4000, n_refined_places: 100, n_moves: 10, interval: 1.0 }
+        Self {
+            n_frames: 16,
+            n_sampled_trajectories: 4000,
+            n_refined_places: 100,
+            n_first_round_moves: 10,
+            interval: 1.0,
+        }
     }
 }
 
@@ -74,7 +80,7 @@ impl Default for LocalizerParams {
             pixels: PixelLikelihoodParams::default(),
             odometry: OdometryNoise::default(),
             camera: CameraNoise::default(),
-            search: SearchParams::default(),
+            search: GlobalSearchParams::default(),
             relocalization: RelocalizationParams::default(),
             max_particles: 1000,
             tempering_min_ess_share: 0.2,
@@ -91,7 +97,7 @@ impl LocalizerParams {
     pub fn as_published() -> Self {
         Self {
             pixels: PixelLikelihoodParams::as_published(),
-            search: SearchParams { n_sampled_trajectories: 0, ..SearchParams::default() },
+            search: GlobalSearchParams { n_sampled_trajectories: 0, ..GlobalSearchParams::default() },
             relocalization: RelocalizationParams::off(),
             tempering_min_ess_share: 0.0,
             occlusion: Occlusion { mean_time_hidden: 0.0, ..Occlusion::default() },
@@ -119,7 +125,7 @@ impl LocalizerParams {
         }
         check("number of frames", self.search.n_frames as f64, 1.0, f64::MAX)?;
         check("number of places", self.search.n_refined_places as f64, 1.0, f64::MAX)?;
-        check("number of moves", f64::from(self.search.n_moves), 0.0, f64::from(u16::MAX))?;
+        check("number of moves", f64::from(self.search.n_first_round_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
         check(
             "smallest share of effective particles after tempering",

@@ -139,7 +139,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         for round in 0..=N_HALVINGS {
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.weigh(scratch, candidate, Effort::Full);
-                for _ in 0..params.n_moves << round {
+                for _ in 0..params.n_first_round_moves << round {
                     self.refine(scratch, candidate, rng);
                 }
             })?;

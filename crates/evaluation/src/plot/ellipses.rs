@@ -8,9 +8,9 @@ use super::{PlotError, SvgPlot};
 /// Covariance ellipses in the plane, one panel a group, all panels with the same axes.
 ///
 /// ```
-/// use wayfix_evaluation::plot::{EllipsesPlot, NamedEllipse};
+/// use wayfix_evaluation::plot::{CovarianceEllipsesPlot, NamedEllipse};
 /// let pink = NamedEllipse { name: "pink".to_owned(), center: (120.0, 160.0), covariance: [[90.0, 20.0], [20.0, 60.0]] };
-/// let plot = EllipsesPlot {
+/// let plot = CovarianceEllipsesPlot {
 ///     title: "Colours".to_owned(),
 ///     x_label: "U".to_owned(),
 ///     sigmas: 1.0,
@@ -20,7 +20,7 @@ use super::{PlotError, SvgPlot};
 /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct EllipsesPlot {
+pub struct CovarianceEllipsesPlot {
     /// Caption.
     pub title: String,
     /// Label of the abscissa.
@@ -44,7 +44,7 @@ pub struct NamedEllipse {
 
 const PANEL_HEIGHT: f64 = 170.0;
 
-impl EllipsesPlot {
+impl CovarianceEllipsesPlot {
     /// The picture.
     ///
     /// # Errors

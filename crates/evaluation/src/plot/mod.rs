@@ -8,7 +8,7 @@
 //! | [`ConsistencyPlot`] | NEES or NIS against time, its band and its moving mean |
 //! | [`StepTimesPlot`] | what each step cost, with the median |
 //! | [`LinePlot`] | any named series, linear or logarithmic |
-//! | [`EllipsesPlot`] | covariance ellipses in the plane, a panel for each group |
+//! | [`CovarianceEllipsesPlot`] | covariance ellipses in the plane, a panel for each group |
 //! | [`FilmStrip`] | camera frames in rows |
 //!
 //! Numbers that are not finite leave a gap; a plot without a drawable number shows "no data". Long series are thinned to the resolution of the
@@ -27,7 +27,7 @@ mod svg;
 mod times;
 
 pub use consistency::ConsistencyPlot;
-pub use ellipses::{EllipsesPlot, NamedEllipse};
+pub use ellipses::{CovarianceEllipsesPlot, NamedEllipse};
 pub use error::PlotError;
 pub use error_plot::{PoseErrorPlot, PoseErrorSample};
 pub use film_strip::{FilmStrip, FilmStripFrame};

@@ -51,8 +51,8 @@ impl MonobotMonteCarlo {
         };
         let (rank, dimension) = self.drives.first().map_or((f64::NAN, f64::NAN), rank);
         vec![
-            Metric::new("first_landmark_rms_m", root_mean_square(&first), "m"),
-            Metric::new("end_landmark_rms_m", root_mean_square(&end), "m"),
+            Metric::new("start_landmark_error_rms_m", root_mean_square(&first), "m"),
+            Metric::new("end_landmark_error_rms_m", root_mean_square(&end), "m"),
             Metric::new("end_landmark_sigma_m", root_mean_square(&claimed), "m"),
             Metric::new("end_on_first_error_slope", slope(&first, &end), ""),
             Metric::new("bias_over_confidence_half_width", bias, ""),

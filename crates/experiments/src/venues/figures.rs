@@ -3,7 +3,7 @@ use wayfix_color_model::ColorDensity;
 use super::{methods::Method, score::VenueScore, venue::Venue};
 use wayfix_evaluation::{
     errors::MeanInterval,
-    plot::{EllipsesPlot, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
+    plot::{CovarianceEllipsesPlot, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
     report::Metric,
 };
 
@@ -72,7 +72,7 @@ pub(super) fn plots(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<SvgPl
         ..LinePlot::default()
     };
     let carpets = |venue: &Venue| venue.images.first().map(|image| image.carpet.density);
-    let colors = EllipsesPlot {
+    let colors = CovarianceEllipsesPlot {
         title: "Carpets and balls in UV, 1σ, first image and all balls of each venue".to_owned(),
         x_label: "U".to_owned(),
         sigmas: 1.0,

@@ -47,12 +47,12 @@ pub struct JumpMarkovFilterParams {
     /// Histories kept; default 8, 1 selects greedily.
     pub n_histories: usize,
     /// Number of measurements for which a history stores its models; default 256.
-    pub history_length: usize,
+    pub n_remembered_models: usize,
 }
 
 impl Default for JumpMarkovFilterParams {
     fn default() -> Self {
-        Self { n_histories: 8, history_length: 256 }
+        Self { n_histories: 8, n_remembered_models: 256 }
     }
 }
 
@@ -219,7 +219,7 @@ where
         history.active.fill(0.0);
         history.active[extension.model] = 1.0;
         history.path.push(extension.model);
-        let surplus = history.path.len().saturating_sub(self.params.history_length);
+        let surplus = history.path.len().saturating_sub(self.params.n_remembered_models);
         history.path.drain(..surplus);
         history.probability = probability;
         history

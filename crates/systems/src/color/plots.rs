@@ -7,8 +7,8 @@ use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
     errors::TrajectorySample,
     plot::{
-        EllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries,
-        PoseErrorPlot, PoseErrorSample, SvgPlot,
+        CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError,
+        PlotSeries, PoseErrorPlot, PoseErrorSample, SvgPlot,
     },
 };
 
@@ -24,7 +24,7 @@ pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
     }
     let light = run.system.light();
     let member = |k: usize| (format!("light {k}, V"), uv_ellipses(run.system.map(), light.member(k)));
-    let ellipses = EllipsesPlot {
+    let ellipses = CovarianceEllipsesPlot {
         title: "What the colours look like at the end (1σ in U and V)".to_owned(),
         x_label: "U".to_owned(),
         sigmas: 1.0,

@@ -242,7 +242,7 @@ impl PointFrontEnd {
                 DetectionTarget::Landmark(id) => Some(LandmarkId(id)),
                 DetectionTarget::Unlabelled => None,
                 DetectionTarget::Robot(_) => {
-                    estimator.events.count("robot_detection");
+                    estimator.events.count("robot_detection_ignored");
                     continue;
                 }
                 DetectionTarget::UnknownCode(_) => {

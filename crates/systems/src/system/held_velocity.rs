@@ -39,7 +39,7 @@ struct Held {
 
 /// The motion over an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldMotion {
+pub struct HeldVelocityMotion {
     /// The motion while the velocity holds.
     pub increment: Pose2<f64>,
     /// Time for which the velocity holds, s.
@@ -63,7 +63,7 @@ impl HeldVelocity {
     /// The motion from the last call to `stamp`; `None` without a velocity or if no time has passed.
     ///
     /// The velocity holds for `longest` seconds after its stamp.
-    pub fn motion_until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldMotion> {
+    pub fn motion_until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldVelocityMotion> {
         let Held { stamp: since, used_until, linear, angular } = self.held?;
         let now = stamp.nanoseconds();
         if now <= used_until {
@@ -74,7 +74,7 @@ impl HeldVelocity {
         let unknown_seconds = now.saturating_sub(used_until.max(expires)) as f64 * 1e-9;
         self.held = Some(Held { stamp: since, used_until: now, linear, angular });
         let increment = Pose2::exp(&Vector3::new(linear * seconds, 0.0, angular * seconds));
-        Some(HeldMotion { increment, seconds, unknown_seconds })
+        Some(HeldVelocityMotion { increment, seconds, unknown_seconds })
     }
 }
 

@@ -17,7 +17,7 @@ mod stopwatch;
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawing, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
-pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_TIMEOUT, check_velocity};
+pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
 pub use motion_statistics::MotionStatistics;

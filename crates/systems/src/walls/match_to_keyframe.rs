@@ -24,7 +24,7 @@ impl WallFrontEnd {
                 InitialGuess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
             let found = matcher.align(&look.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
-                estimator.events.count("scan_matched");
+                estimator.events.count("keyframe_matched");
                 laser_heading = self.relative_motion.heading_from_match(&found);
                 let relative_motion = self.relative_motion.with_scaled_covariance(found.guess_scale);
                 let drift_change = relative_motion
@@ -33,7 +33,7 @@ impl WallFrontEnd {
                 self.relative_motion =
                     relative_motion.corrected_by(&found, drift_change).unwrap_or(relative_motion);
             } else {
-                estimator.events.count("scan_unmatched");
+                estimator.events.count("keyframe_match_failed");
             }
         }
         self.relative_motion = self.relative_motion.after_scan();

@@ -14,6 +14,6 @@ mod search;
 mod start;
 mod tracker;
 
-pub use hypotheses::agreement::SegmentationAgreement;
+pub use hypotheses::agreement::ColorHypothesisAgreement;
 pub use params::{ContourTrackerParams, TrackingCues};
 pub use tracker::ContourTracker;

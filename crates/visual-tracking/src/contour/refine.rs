@@ -1,4 +1,4 @@
-use super::{SegmentationAgreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
+use super::{ColorHypothesisAgreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::StructuringElement;
 use crate::{ColorEdges, PixelMask, SnakeParams, TrackingError};
 
@@ -26,7 +26,7 @@ impl Candidate {
         let fit = snake.fit(&self.map, &edges, &near);
         let area = snake.area_at(&fit.map);
         let area_agrees =
-            SegmentationAgreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
+            ColorHypothesisAgreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
         if fit.support >= 0.5 * self.agreement.affine && area_agrees {
             (self.map, self.area) = (fit.map, area);
         }

@@ -80,7 +80,7 @@ fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: No
     let mut metrics: Vec<Metric> = Vec::new();
     for n in n_landmarks {
         let all = monobot::monte_carlo(&noise.params(*n), WorldReference::None, n_runs, job.options.seed)?;
-        metrics.push(Metric::new(format!("end_landmark_rms_m_n{n}"), all.end_rms(), "m"));
+        metrics.push(Metric::new(format!("end_landmark_error_rms_m_n{n}"), all.end_rms(), "m"));
     }
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
     metrics.push(Metric::new("landmark_rms_ratio", fall, ""));

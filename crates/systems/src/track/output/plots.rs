@@ -1,7 +1,7 @@
 use super::super::{TargetColorDistribution, TrackRunHistory};
 use super::run_history::Point;
 use wayfix_evaluation::plot::{
-    EllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot,
+    CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot,
 };
 
 /// Film frames per row.
@@ -58,7 +58,7 @@ fn overlap(run_history: &TrackRunHistory) -> LinePlot {
 }
 
 /// The colour distribution along its path, as ellipses in two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
-fn clouds(run_history: &TrackRunHistory, names: [&str; 3]) -> EllipsesPlot {
+fn clouds(run_history: &TrackRunHistory, names: [&str; 3]) -> CovarianceEllipsesPlot {
     let plane = |v: usize| {
         let ellipse = |(index, colors): &(usize, TargetColorDistribution)| NamedEllipse {
             name: format!("frame {index}"),
@@ -67,7 +67,7 @@ fn clouds(run_history: &TrackRunHistory, names: [&str; 3]) -> EllipsesPlot {
         };
         (format!("{} over {}", names[v], names[0]), run_history.clouds.kept().iter().map(ellipse).collect())
     };
-    EllipsesPlot {
+    CovarianceEllipsesPlot {
         title: "Path of the colour distribution (1σ)".to_owned(),
         x_label: names[0].to_owned(),
         sigmas: 1.0,

@@ -3,15 +3,15 @@ use super::super::ContourTrackerParams;
 /// Agreement of a segmentation with the known target, each part from 0 to 1.
 /// [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and weight"]
 /// ```
-/// use wayfix_visual_tracking::{SegmentationAgreement, ContourTrackerParams};
-/// let perfect = SegmentationAgreement { affine: 1.0, area: SegmentationAgreement::of_areas(400.0, 400.0), quality: SegmentationAgreement::of_euler_number(1, 10.0) };
+/// use wayfix_visual_tracking::{ColorHypothesisAgreement, ContourTrackerParams};
+/// let perfect = ColorHypothesisAgreement { affine: 1.0, area: ColorHypothesisAgreement::of_areas(400.0, 400.0), quality: ColorHypothesisAgreement::of_euler_number(1, 10.0) };
 /// let params = ContourTrackerParams::default();
 /// assert_eq!((perfect.mismatch(&params), perfect.log_weight(&params), perfect.score(&params)), (0.0, 0.0, 1.0));
-/// assert_eq!(SegmentationAgreement::of_areas(400.0, 300.0), 0.75);
-/// assert_eq!(SegmentationAgreement::of_euler_number(-1, 10.0), 0.8); // two holes
+/// assert_eq!(ColorHypothesisAgreement::of_areas(400.0, 300.0), 0.75);
+/// assert_eq!(ColorHypothesisAgreement::of_euler_number(-1, 10.0), 0.8); // two holes
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SegmentationAgreement {
+pub struct ColorHypothesisAgreement {
     /// $`Φ_\text{affine}`$: the share of the fitted snake that lies on the segmented boundary.
     pub affine: f64,
     /// $`Φ_\text{area}`$, see [`of_areas`](Self::of_areas).
@@ -20,7 +20,7 @@ pub struct SegmentationAgreement {
     pub quality: f64,
 }
 
-impl SegmentationAgreement {
+impl ColorHypothesisAgreement {
     /// No agreement.
     pub(in crate::contour) const NONE: Self = Self { affine: 0.0, area: 0.0, quality: 0.0 };
 

@@ -1,4 +1,4 @@
-use super::super::{SegmentationAgreement, scene::Scene};
+use super::super::{ColorHypothesisAgreement, scene::Scene};
 use crate::{AffineMap, ColorEdges, ColorState, MaskEdges, PixelConnectivity, PixelMask, TrackingCues};
 
 /// Estimate of the target under a hypothesis about its colours.
@@ -6,7 +6,7 @@ use crate::{AffineMap, ColorEdges, ColorState, MaskEdges, PixelConnectivity, Pix
 pub(in crate::contour) struct Candidate {
     pub(in crate::contour) map: AffineMap,
     pub(in crate::contour) area: f64,
-    pub(in crate::contour) agreement: SegmentationAgreement,
+    pub(in crate::contour) agreement: ColorHypothesisAgreement,
 }
 
 impl Candidate {
@@ -14,7 +14,7 @@ impl Candidate {
     pub(in crate::contour) fn of_colors(scene: &Scene<'_>, state: &ColorState) -> Self {
         match scene.target_mask(&scene.bin_set(state)) {
             Some(mask) => Self::of_mask(scene, &scene.start, &mask),
-            None => Self { map: scene.start, area: 0.0, agreement: SegmentationAgreement::NONE },
+            None => Self { map: scene.start, area: 0.0, agreement: ColorHypothesisAgreement::NONE },
         }
     }
 
@@ -33,10 +33,10 @@ impl Candidate {
                 (fit.map, snake.area_at(&fit.map), fit.support * in_sight(fit.visible))
             }
         };
-        let agreement = SegmentationAgreement {
+        let agreement = ColorHypothesisAgreement {
             affine,
-            area: SegmentationAgreement::of_areas(scene.expected_area, area),
-            quality: SegmentationAgreement::of_euler_number(
+            area: ColorHypothesisAgreement::of_areas(scene.expected_area, area),
+            quality: ColorHypothesisAgreement::of_euler_number(
                 mask.euler_number(PixelConnectivity::Eight),
                 params.euler_number_range,
             ),
@@ -50,9 +50,9 @@ impl Candidate {
         let edges = ColorEdges::new(scene.picture, params.edge_contrast);
         let fit = snake.fit(&scene.start, &edges, &params.snake);
         let area = snake.area_at(&fit.map);
-        let agreement = SegmentationAgreement {
+        let agreement = ColorHypothesisAgreement {
             affine: fit.support * in_sight(fit.visible),
-            area: SegmentationAgreement::of_areas(scene.expected_area, area),
+            area: ColorHypothesisAgreement::of_areas(scene.expected_area, area),
             quality: 1.0,
         };
         Self { map: fit.map, area, agreement }
