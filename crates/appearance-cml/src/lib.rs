@@ -14,7 +14,7 @@ mod state;
 mod views;
 
 pub use archive::{
-    MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
+    ArchivedViewFormat, MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal,
 };
 pub use error::AppearanceMapError;
 pub use fusion::{

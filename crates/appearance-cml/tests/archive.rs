@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceMap, IntensityScale, MapArchive, MapArchiveEnd, MapArchiveError,
-    MapArchiveJournal, MapArchiveParams, PanoramaDescriptor, PanoramaParams, ReferenceSearch,
+    AppearanceIndex, AppearanceMap, ArchivedViewFormat, IntensityScale, MapArchive, MapArchiveEnd,
+    MapArchiveError, MapArchiveJournal, PanoramaDescriptor, PanoramaParams, ReferenceSearch,
     ViewDifferenceSample,
 };
 use wayfix_estimation_traits::Pose2;
@@ -13,8 +13,8 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 type Map = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
 type Parts = (Map, Option<GaussianMixture<Pose2<f64>>>);
 
-fn params() -> MapArchiveParams {
-    MapArchiveParams { views: PanoramaParams::default(), size: (120, 3) }
+fn params() -> ArchivedViewFormat {
+    ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 3) }
 }
 
 fn pose(step: usize) -> Gaussian<Pose2<f64>> {
@@ -145,17 +145,20 @@ fn another_version_and_other_parameters_are_named() {
     assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), MapArchiveError::Version { found: 9, known: 3 });
     let good = params();
     for (params, named) in [
-        (MapArchiveParams { size: (240, 3), ..good }, "size of the panorama"),
+        (ArchivedViewFormat { size: (240, 3), ..good }, "size of the panorama"),
         (
-            MapArchiveParams {
+            ArchivedViewFormat {
                 views: PanoramaParams { intensity_scale: IntensityScale::Linear, ..good.views },
                 ..good
             },
             "intensity_scale",
         ),
-        (MapArchiveParams { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good }, "n_harmonics"),
         (
-            MapArchiveParams { views: PanoramaParams { smoothing_sigma: 0.0, ..good.views }, ..good },
+            ArchivedViewFormat { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good },
+            "n_harmonics",
+        ),
+        (
+            ArchivedViewFormat { views: PanoramaParams { smoothing_sigma: 0.0, ..good.views }, ..good },
             "smoothing_sigma",
         ),
     ] {

@@ -100,7 +100,7 @@ fn invalid_start_or_parameters_are_refused() {
     let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
     assert!(Localizer::new(LocalizerParams::default(), Start::Known(flat)).is_err());
     let mut params = LocalizerParams::default();
-    params.map.learning_rate = f64::NAN;
+    params.map.weight_learning_rate = f64::NAN;
     assert!(matches!(
         Localizer::new(params, Start::Anywhere),
         Err(AppearanceMapError::Parameter { what: "learning rate", .. })

@@ -32,7 +32,7 @@ fn published() -> AppearanceMapParams {
     // A quarter of the way from a nugget of 0 to the sill at twice the difference of successive views, both in squares: E^max = 1.
     AppearanceMapParams {
         match_limit_fraction: 0.25,
-        learning_rate: 0.5,
+        weight_learning_rate: 0.5,
         min_weight: 0.01,
         forgetting_rate: 0.4,
         ..AppearanceMapParams::as_published()

@@ -25,7 +25,7 @@ pub use likelihood::{
     PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
 };
 pub use localizer::{
-    CameraLocation, CameraNoise, CameraPoseError, ColorLocalizer, FrameOutcome, GlobalSearchParams,
+    CameraLocation, CameraPoseError, CameraPoseNoise, ColorLocalizer, FrameOutcome, GlobalSearchParams,
     LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{

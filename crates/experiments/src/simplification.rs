@@ -32,7 +32,7 @@ pub fn simplification(n_chains: u32, seed: u64) -> Result<ReportRun> {
     }
     let metrics = vec![
         Metric::new("n_chains", f64::from(n_chains), ""),
-        Metric::new("n_chains_differ", f64::from(n_differ), ""),
+        Metric::new("n_polylines_simplified_differently", f64::from(n_differ), ""),
         Metric::new("kept_point_share", kept as f64 / points as f64, ""),
         Metric::new("tolerance_excess_m", excess, "m"),
     ];

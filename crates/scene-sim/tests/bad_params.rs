@@ -55,7 +55,7 @@ fn sensor_parameters() {
             RangeBearingParams { drift: drift(bad, 0.0), ..honest },
             RangeBearingParams { drift: drift(1.0, bad), ..honest },
             RangeBearingParams { outlier_share: bad, ..honest },
-            RangeBearingParams { dropout_share: bad, ..honest },
+            RangeBearingParams { scan_dropout_share: bad, ..honest },
             RangeBearingParams { missed_share: bad, ..honest },
             RangeBearingParams { mislabelled_share: bad, ..honest },
             RangeBearingParams { clutter: Clutter { mean: bad, label: ClutterLabel::Unlabelled }, ..honest },

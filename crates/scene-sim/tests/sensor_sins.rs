@@ -130,7 +130,7 @@ fn outliers_drop_outs_and_misses_come_in_the_shares_asked_for() {
     let outliers = detections(RangeBearingParams { outlier_share: 0.05, ..silent() }, &ahead(), N, SEED);
     assert_share("outliers", outliers.iter().filter(|s| (s.range - 5.0).abs() > 1e-9).count(), n, 0.05);
 
-    let params = RangeBearingParams { dropout_share: 0.1, ..silent() };
+    let params = RangeBearingParams { scan_dropout_share: 0.1, ..silent() };
     let lost = looks(params, &ahead(), N, &mut streams(SEED)).iter().filter(|look| look.is_none()).count();
     assert_share("lost looks", lost, n, 0.1);
 

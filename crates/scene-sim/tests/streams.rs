@@ -33,7 +33,7 @@ fn switching_one_sin_on_leaves_the_draws_of_the_others() {
     let honest = RangeBearingParams::default();
     let plain = of_the_landmark(honest);
     for (what, sinful) in [
-        ("drop-outs", RangeBearingParams { dropout_share: 0.3, ..honest }),
+        ("drop-outs", RangeBearingParams { scan_dropout_share: 0.3, ..honest }),
         ("misses", RangeBearingParams { missed_share: 0.3, ..honest }),
         (
             "clutter",

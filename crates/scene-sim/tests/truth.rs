@@ -9,7 +9,7 @@ use wayfix_scene_sim::route::{
     CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route,
 };
 use wayfix_scene_sim::sensor::{
-    GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams,
+    GaussianOdometry, GaussianOdometryParams, OdometryEncoding, RangeBearingDetector, RangeBearingParams,
     SimulatedSensor, WheelOdometry, WheelOdometryParams,
 };
 use wayfix_scene_sim::{Scenario, Simulation};
@@ -132,7 +132,7 @@ fn odometry_of_an_honest_robot_retraces_its_way() {
     // Within a period of 0.1 s wheel speeds change a little, which arcs of constant curvature do not retrace exactly.
     assert!(end.local(&poses[poses.len() - 1]).norm() < 1e-3, "{:?}", end.local(&poses[poses.len() - 1]));
 
-    let held = WheelOdometryParams { kind: OdometryKind::Velocity, ..exact };
+    let held = WheelOdometryParams { kind: OdometryEncoding::Velocity, ..exact };
     let records = drive(
         circle(),
         WheeledRobotParams::default(),

@@ -218,5 +218,5 @@ fn impossible_time_increment_is_said_and_not_used() {
     let (error, nees) = error_and_nees(&run);
     assert!(error < CENTIMETRES && nees < CONSISTENT, "{error} m, NEES {nees}");
     assert_eq!(run.events().get("scan_deskewed"), 0);
-    assert!(run.events().get("time_increment_implausible") > 290);
+    assert!(run.events().get("scan_duration_implausible") > 290);
 }

@@ -10,10 +10,10 @@ use crate::{AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, Ref
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveParams, MapArchiveJournal, MapArchive, PanoramaDescriptor, PanoramaParams};
+/// use wayfix_appearance_cml::{AppearanceMap, ArchivedViewFormat, MapArchiveJournal, MapArchive, PanoramaDescriptor, PanoramaParams};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
-/// let params = MapArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
+/// let params = ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 25) };
 /// let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let mut bytes = MapArchive::to_bytes(&params, &map, None);
 /// let mut journal = MapArchiveJournal::after(&map);

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::GaussianMixture;
 
 use super::{
-    MapArchiveError, MapArchiveParams,
+    ArchivedViewFormat, MapArchiveError,
     bytes::{Reader, Writer},
     entry::Entry,
 };
@@ -19,8 +19,8 @@ const VERSION: u32 = 3;
 /// A map of panoramas, where the robot is in it, and what views were described with.
 ///
 /// ```
-/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveEnd, MapArchiveParams, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaParams};
-/// let params = MapArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
+/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveEnd, ArchivedViewFormat, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaParams};
+/// let params = ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 25) };
 /// let map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let bytes = MapArchive::to_bytes(&params, &map, None);
 /// let archive = MapArchive::from_bytes(&bytes)?;
@@ -31,7 +31,7 @@ const VERSION: u32 = 3;
 /// ```
 #[derive(Clone, Debug)]
 pub struct MapArchive {
-    params: MapArchiveParams,
+    params: ArchivedViewFormat,
     references: BTreeMap<ReferenceId, (PanoramaDescriptor, ReferenceView)>,
     scale: ViewDistanceScale,
     next: u32,
@@ -57,7 +57,7 @@ pub enum MapArchiveEnd {
 impl MapArchive {
     /// The bytes of a map, and of where the robot may be.
     pub fn to_bytes<S: ReferenceSearch<PanoramaDescriptor>>(
-        params: &MapArchiveParams,
+        params: &ArchivedViewFormat,
         map: &AppearanceMap<PanoramaDescriptor, S>,
         state: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Vec<u8> {
@@ -109,7 +109,7 @@ impl MapArchive {
     }
 
     /// What its views were described with.
-    pub fn params(&self) -> &MapArchiveParams {
+    pub fn params(&self) -> &ArchivedViewFormat {
         &self.params
     }
 
@@ -134,7 +134,7 @@ impl MapArchive {
     /// When the map was learned with other parameters, or its parts make no map.
     pub fn into_map<S: ReferenceSearch<PanoramaDescriptor> + Default>(
         self,
-        params: &MapArchiveParams,
+        params: &ArchivedViewFormat,
     ) -> Result<MapAndState<S>, MapArchiveError> {
         params.check(&self.params)?;
         let mut search = S::default();
@@ -177,7 +177,7 @@ pub(super) fn append(entry: &Entry, bytes: &mut Vec<u8>) {
     *bytes = writer.0;
 }
 
-fn header(params: &MapArchiveParams) -> Vec<u8> {
+fn header(params: &ArchivedViewFormat) -> Vec<u8> {
     let mut content = Writer::default();
     params.write(&mut content);
     let mut writer = Writer(MAGIC.to_vec());
@@ -190,7 +190,7 @@ fn header(params: &MapArchiveParams) -> Vec<u8> {
 }
 
 /// The parameters, and the bytes after the header.
-fn open(bytes: &[u8]) -> Result<(MapArchiveParams, &[u8]), MapArchiveError> {
+fn open(bytes: &[u8]) -> Result<(ArchivedViewFormat, &[u8]), MapArchiveError> {
     let rest = bytes.strip_prefix(&MAGIC).ok_or(MapArchiveError::NotAMap)?;
     let mut reader = Reader(rest);
     let found = reader.u32().ok_or(MapArchiveError::Header)?;
@@ -204,7 +204,7 @@ fn open(bytes: &[u8]) -> Result<(MapArchiveParams, &[u8]), MapArchiveError> {
     if sum != checksum(&bytes[..summed]) {
         return Err(MapArchiveError::Header);
     }
-    let params = MapArchiveParams::read(content).ok_or(MapArchiveError::Header)?;
+    let params = ArchivedViewFormat::read(content).ok_or(MapArchiveError::Header)?;
     Ok((params, reader.0))
 }
 

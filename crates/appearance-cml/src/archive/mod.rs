@@ -18,4 +18,4 @@ mod params;
 pub use error::MapArchiveError;
 pub use journal::MapArchiveJournal;
 pub use map_archive::{MapAndState, MapArchive, MapArchiveEnd};
-pub use params::MapArchiveParams;
+pub use params::ArchivedViewFormat;

@@ -6,14 +6,14 @@ use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaP
 
 /// Parameters that a map archive and its reader must share: the descriptor and the size of the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapArchiveParams {
+pub struct ArchivedViewFormat {
     /// How panoramas are described.
     pub views: PanoramaParams,
     /// Columns and rows of a panorama.
     pub size: (usize, usize),
 }
 
-impl MapArchiveParams {
+impl ArchivedViewFormat {
     pub(super) fn write(&self, writer: &mut Writer) {
         let views = &self.views;
         for whole in [views.n_rings, views.n_sectors, views.n_harmonics, self.size.0, self.size.1] {

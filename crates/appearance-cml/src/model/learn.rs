@@ -209,6 +209,6 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
 
 /// A new place has weight 0 and then matches at distance 0: Eq. 16 gives the learning rate.
 fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &AppearanceMapParams) -> ReferenceView {
-    let weight = params.learning_rate.max(params.min_weight);
+    let weight = params.weight_learning_rate.max(params.min_weight);
     ReferenceView { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
 }

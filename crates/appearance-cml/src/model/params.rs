@@ -57,7 +57,7 @@ pub enum ForgettingUncertainty {
 /// ```
 /// use wayfix_appearance_cml::AppearanceMapParams;
 /// assert!(AppearanceMapParams::default().validate().is_ok());
-/// assert!(AppearanceMapParams { learning_rate: 1.5, ..AppearanceMapParams::default() }.validate().is_err());
+/// assert!(AppearanceMapParams { weight_learning_rate: 1.5, ..AppearanceMapParams::default() }.validate().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -71,7 +71,7 @@ pub struct AppearanceMapParams {
     /// is nearer to noise than to a far place.
     pub match_limit_fraction: f64,
     /// $`β`$: learning rate of the weights (Eqs. 16-17). Default 0.3: a place that was seen twice has half of the full weight.
-    pub learning_rate: f64,
+    pub weight_learning_rate: f64,
     /// Default [`PlaceUpdateRule::Residual`].
     pub place_update: PlaceUpdateRule,
     /// Default [`ForgettingMode::Active`].
@@ -93,7 +93,7 @@ impl Default for AppearanceMapParams {
     fn default() -> Self {
         Self {
             match_limit_fraction: 0.4,
-            learning_rate: 0.3,
+            weight_learning_rate: 0.3,
             place_update: PlaceUpdateRule::default(),
             forgetting_mode: ForgettingMode::default(),
             forgetting_rate: 0.6,
@@ -122,7 +122,7 @@ impl AppearanceMapParams {
     /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::share("share of the match limit", self.match_limit_fraction)?;
-        check::share("learning rate", self.learning_rate)?;
+        check::share("weight learning rate", self.weight_learning_rate)?;
         check::share("rate of forgetting", self.forgetting_rate)?;
         check::share("min_weight of a place", self.min_weight)?;
         check::positive("max_observation_count of a place", self.max_observation_count)?;

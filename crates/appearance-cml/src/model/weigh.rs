@@ -16,7 +16,7 @@ pub(super) fn weight_when_seen(
     (limit, gate): (f64, f64),
     (scale, params): (&ViewDistanceScale, &AppearanceMapParams),
 ) -> Result<f64, AppearanceMapError> {
-    let gain = params.learning_rate * similarity(matched.comparison.distance, limit);
+    let gain = params.weight_learning_rate * similarity(matched.comparison.distance, limit);
     let seen_from = turned(&place.gaussian, matched.comparison.rotation);
     let expected = match params.place_update {
         PlaceUpdateRule::Pose => seen_from,

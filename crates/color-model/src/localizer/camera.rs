@@ -42,7 +42,7 @@ impl CameraPoseError {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct CameraNoise {
+pub struct CameraPoseNoise {
     /// Standard deviation of roll, tilt and pan, rad. Default 0.025: the body of a walking four-legged robot sways by 1° to 2°.
     pub rotation_sigma: f64,
     /// Standard deviation of the height, m. Default 0.008.
@@ -51,13 +51,13 @@ pub struct CameraNoise {
     pub correlation_time: f64,
 }
 
-impl Default for CameraNoise {
+impl Default for CameraPoseNoise {
     fn default() -> Self {
         Self { rotation_sigma: 0.025, height_sigma: 0.008, correlation_time: 0.2 }
     }
 }
 
-impl CameraNoise {
+impl CameraPoseNoise {
     /// The error `seconds` later: $`e' = ρ e + \sqrt{1 - ρ^2}\, n`$, $`ρ = e^{-t/τ}`$, with constant standard deviations.
     pub fn after<R: Rng + ?Sized>(
         &self,
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn errors_keep_their_spread_and_forget_in_the_stated_time() {
-        let noise = CameraNoise::default();
+        let noise = CameraPoseNoise::default();
         let mut rng = ChaCha8Rng::seed_from_u64(2);
         let (n, mut variance, mut product) = (20_000, 0.0, 0.0);
         for _ in 0..n {

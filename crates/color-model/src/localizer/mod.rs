@@ -15,7 +15,7 @@ mod search;
 mod start;
 mod trajectory;
 
-pub use camera::{CameraLocation, CameraNoise, CameraPoseError};
+pub use camera::{CameraLocation, CameraPoseError, CameraPoseNoise};
 pub use color_localizer::ColorLocalizer;
 pub use estimate::PoseEstimate;
 pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};

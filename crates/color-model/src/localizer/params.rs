@@ -1,6 +1,6 @@
 use wayfix_integrity::RelocalizationParams;
 
-use super::{CameraNoise, OdometryNoise};
+use super::{CameraPoseNoise, OdometryNoise};
 use crate::{ColorModelError, Occlusion, PixelLikelihoodParams};
 
 /// Parameters of [`ColorLocalizer`](crate::ColorLocalizer).
@@ -23,7 +23,7 @@ pub struct LocalizerParams {
     /// Noise of the odometry.
     pub odometry: OdometryNoise,
     /// Noise of the camera's pose on the body.
-    pub camera: CameraNoise,
+    pub camera: CameraPoseNoise,
     /// Global search at the start and for relocalization.
     pub search: GlobalSearchParams,
     /// The change test between the present pose and the places that a search finds; off with `false_alarms_per_km` 0.
@@ -79,7 +79,7 @@ impl Default for LocalizerParams {
         Self {
             pixels: PixelLikelihoodParams::default(),
             odometry: OdometryNoise::default(),
-            camera: CameraNoise::default(),
+            camera: CameraPoseNoise::default(),
             search: GlobalSearchParams::default(),
             relocalization: RelocalizationParams::default(),
             max_particles: 1000,
@@ -108,7 +108,7 @@ impl LocalizerParams {
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         self.pixels.check()?;
         self.relocalization.validate()?;
-        let CameraNoise { rotation_sigma, height_sigma, correlation_time } = self.camera;
+        let CameraPoseNoise { rotation_sigma, height_sigma, correlation_time } = self.camera;
         let camera = [
             ("camera rotation sigma", rotation_sigma),
             ("camera height sigma", height_sigma),

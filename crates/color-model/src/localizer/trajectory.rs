@@ -3,7 +3,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 
-use super::{CameraNoise, buffer::BufferedFrame, camera::CameraLocation, estimate::PLACE_RADIUS};
+use super::{CameraPoseNoise, buffer::BufferedFrame, camera::CameraLocation, estimate::PLACE_RADIUS};
 
 /// Camera locations at all frames of a buffer: the newest body pose, and the errors of odometry and camera as standard normal deviates.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ impl Trajectory {
     }
 
     /// The camera location at every frame, the newest last.
-    pub(crate) fn locations(&self, frames: &[BufferedFrame], noise: &CameraNoise) -> Vec<CameraLocation> {
+    pub(crate) fn locations(&self, frames: &[BufferedFrame], noise: &CameraPoseNoise) -> Vec<CameraLocation> {
         let mut body = self.newest;
         let mut locations: Vec<CameraLocation> = Vec::with_capacity(frames.len());
         for (frame, (odometry, camera)) in frames.iter().zip(&self.errors).rev() {

@@ -77,7 +77,7 @@ pub fn kidnapped(
     let trials = trials(seeds, |seed| {
         let drive = LeagueParams {
             n_frames: BEFORE + FRAMES,
-            kidnaps: vec![BEFORE],
+            kidnap_frames: vec![BEFORE],
             lamp_settings: vec![(0, lighting(seed))],
             ..LeagueParams::default()
         };

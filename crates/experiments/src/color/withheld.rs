@@ -68,10 +68,17 @@ fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
         MeanInterval::of(values)
             .map(|mean| (Metric::of_mean(&format!("withheld_{name}_rate_{what}"), &mean, ""), mean))
     };
-    let all =
-        [mean_of("joint_prior", joint), mean_of("independent_prior", independent), mean_of("gain", &gain)];
+    let all = [
+        mean_of("joint_prior", joint),
+        mean_of("independent_prior", independent),
+        mean_of("joint_minus_independent", &gain),
+    ];
     let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
-    let low = Metric::new(format!("withheld_{name}_rate_gain_low95"), mean.mean - mean.half_width, "");
+    let low = Metric::new(
+        format!("withheld_{name}_rate_joint_minus_independent_low95"),
+        mean.mean - mean.half_width,
+        "",
+    );
     joint.into_iter().chain(independent).chain(gain).chain([low]).collect()
 }
 

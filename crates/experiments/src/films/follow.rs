@@ -10,7 +10,7 @@ use super::{
 };
 use wayfix_systems::{
     system::Stopwatch,
-    track::{TargetStart, TargetTruth, TrackFrameResult, TrackParams, TrackingMethod},
+    track::{InitialTargetRegion, TargetTruth, TrackFrameResult, TrackParams, TrackingMethod},
 };
 
 /// Runs trackers of several methods on a film, each started with the true mask of the first frame, and scores the later frames.
@@ -26,7 +26,7 @@ pub fn follow(
 ) -> Result<Vec<FilmTrackingScore>> {
     let mut frames = film.frames()?;
     let first = frames.next().context("a film without frames")?;
-    let (picture, start) = (pixels(&first)?, TargetStart::Mask(mask(&first.target)?));
+    let (picture, start) = (pixels(&first)?, InitialTargetRegion::Mask(mask(&first.target)?));
     let begin = |method: &TrackingMethod| method.begin(params, &picture, &start);
     let mut trackers = methods.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
     let mut rngs = vec![ChaCha8Rng::seed_from_u64(film.seed); methods.len()];

@@ -3,7 +3,7 @@ use rand::Rng;
 use super::{AmbientLightParams, OmniCameraParams};
 use crate::drive::{SlipParams, WheeledRobotParams};
 use crate::random::deviate::normal;
-use crate::sensor::{OdometryKind, WheelOdometryParams};
+use crate::sensor::{OdometryEncoding, WheelOdometryParams};
 use crate::{SimulationError, check};
 
 /// A robot in a building, and the people around it.
@@ -50,7 +50,7 @@ impl IndoorParams {
     /// Encoders with nominal parameters.
     pub(super) fn odometry(&self) -> WheelOdometryParams {
         WheelOdometryParams {
-            kind: OdometryKind::Increment,
+            kind: OdometryEncoding::Increment,
             period_ms: self.view_period_ms,
             wheel_radius_m: self.drive.wheel_radius_m,
             wheel_separation_m: self.drive.wheel_separation_m,

@@ -146,7 +146,7 @@ impl LeagueDrive {
         let exposure = u64::from(self.venue.camera.exposure_ms);
         let opens = middle - exposure / 2;
         let odometry = self.odometry(opens - ODOMETRY_LEAD_MS);
-        if self.params.kidnaps.contains(&self.n_taken) {
+        if self.params.kidnap_frames.contains(&self.n_taken) {
             self.kidnap();
         }
         self.walk_until(opens);

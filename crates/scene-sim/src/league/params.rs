@@ -17,7 +17,7 @@ pub struct LeagueParams {
     /// Start pose; `None` for a random one on the field. Default `None`.
     pub start: Option<Pose2<f64>>,
     /// Frames before which the robot is kidnapped, by at least 1 m. Default none.
-    pub kidnaps: Vec<usize>,
+    pub kidnap_frames: Vec<usize>,
     /// The robot.
     pub robot: LeggedRobotParams,
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
@@ -34,7 +34,7 @@ impl Default for LeagueParams {
             venue_seed: None,
             lamp_settings: vec![(0, LampSetting::Bright)],
             start: None,
-            kidnaps: Vec::new(),
+            kidnap_frames: Vec::new(),
             robot: LeggedRobotParams::default(),
             with_unmapped_objects: true,
             n_labelled: 12,

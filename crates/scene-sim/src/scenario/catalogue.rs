@@ -7,7 +7,7 @@ use crate::monobot::MonobotParams;
 use crate::random::NoiseShape;
 use crate::route::{CircleRoute, RandomWaypointRoute, RoundedRectangleRoute, RouteParams};
 use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma};
-use crate::sensor::{GaussianOdometryParams, OdometryKind, RangeBearingParams, WheelOdometryParams};
+use crate::sensor::{GaussianOdometryParams, OdometryEncoding, RangeBearingParams, WheelOdometryParams};
 use crate::world::{CorridorLoop, RoadsideLandmarks, UniformLandmarkField, WorldLayout};
 
 pub(super) fn all() -> Vec<Scenario> {
@@ -74,7 +74,7 @@ fn office_velocity() -> PlanarParams {
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
-            kind: OdometryKind::Velocity,
+            kind: OdometryEncoding::Velocity,
             ..WheelOdometryParams::default()
         }),
         sensor: RangeBearingParams {
@@ -144,7 +144,7 @@ fn rough_known() -> PlanarParams {
             },
             latency_ms: 40,
             outlier_share: 0.03,
-            dropout_share: 0.1,
+            scan_dropout_share: 0.1,
             missed_share: 0.15,
             clutter: Clutter { mean: 0.3, label: ClutterLabel::AnyLandmark },
             mislabelled_share: 0.01,

@@ -8,11 +8,12 @@ const HALL: u64 = 2034;
 pub(super) fn all() -> Vec<Scenario> {
     let league =
         |name, seed, params| Scenario { name, seed, params: ScenarioParams::League(Box::new(params)) };
+    let kidnap_frames = vec![95, 190];
     vec![
         league("color_dark", 21, under(LampSetting::Dark)),
         league("color_bright", 22, under(LampSetting::Bright)),
         league("color_switching", 23, switching()),
-        league("color_kidnapped", 24, LeagueParams { kidnaps: vec![95, 190], ..under(LampSetting::Bright) }),
+        league("color_kidnapped", 24, LeagueParams { kidnap_frames, ..under(LampSetting::Bright) }),
     ]
 }
 

@@ -10,4 +10,4 @@ pub use gaussian_odometry::{GaussianOdometry, GaussianOdometryParams};
 pub use instrument::{SensorReading, SimulatedSensor, TrueState};
 pub use laser::{Laser, LaserParams};
 pub use range_bearing::{RangeBearingDetector, RangeBearingParams};
-pub use wheel_odometry::{OdometryKind, WheelOdometry, WheelOdometryParams};
+pub use wheel_odometry::{OdometryEncoding, WheelOdometry, WheelOdometryParams};

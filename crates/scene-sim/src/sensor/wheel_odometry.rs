@@ -9,7 +9,7 @@ use crate::{SimulationError, check, plane};
 
 /// Form of wheel odometry in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OdometryKind {
+pub enum OdometryEncoding {
     /// Mean velocity over a period, stamped at its beginning: holding it until the next retraces the motion.
     Velocity,
     /// Motion over a period, stamped at its end.
@@ -20,7 +20,7 @@ pub enum OdometryKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelOdometryParams {
     /// Velocities or increments. Default increments.
-    pub kind: OdometryKind,
+    pub kind: OdometryEncoding,
     /// Length of a period, milliseconds. Default 100.
     pub period_ms: u32,
     /// Wheel radius believed, metres. Default 0.05.
@@ -36,7 +36,7 @@ pub struct WheelOdometryParams {
 impl Default for WheelOdometryParams {
     fn default() -> Self {
         Self {
-            kind: OdometryKind::Increment,
+            kind: OdometryEncoding::Increment,
             period_ms: 100,
             wheel_radius_m: 0.05,
             wheel_separation_m: 0.30,
@@ -104,11 +104,11 @@ impl SimulatedSensor for WheelOdometry {
         let (travel, turn) = (0.5 * (left + right), (right - left) / self.params.wheel_separation_m);
         let seconds = f64::from(self.params.period_ms) * 1e-3;
         Some(match self.params.kind {
-            OdometryKind::Velocity => SensorReading {
+            OdometryEncoding::Velocity => SensorReading {
                 data: RecordData::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
                 stamp_offset_ms: -i64::from(self.params.period_ms),
             },
-            OdometryKind::Increment => {
+            OdometryEncoding::Increment => {
                 let step = plane::advance(&Pose2::new(0.0, 0.0, 0.0), travel, turn);
                 SensorReading { data: RecordData::OdometryIncrement(step), stamp_offset_ms: 0 }
             }

@@ -1,4 +1,4 @@
-//! A whole drive: reproducible, one sin at a time, kidnaps that nobody notices.
+//! A whole drive: reproducible, one sin at a time, kidnap_frames that nobody notices.
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::league::{
@@ -101,7 +101,7 @@ fn sins_of_the_camera_leave_the_drive_as_it_was() {
 
 #[test]
 fn kidnapped_robot_moves_without_odometry() {
-    let params = LeagueParams { n_frames: 9, kidnaps: vec![3, 6], ..LeagueParams::default() };
+    let params = LeagueParams { n_frames: 9, kidnap_frames: vec![3, 6], ..LeagueParams::default() };
     for seed in 1..6 {
         let frames = frames(&params, seed);
         for (idx, pair) in frames.windows(2).enumerate() {

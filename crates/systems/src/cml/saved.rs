@@ -5,7 +5,7 @@ use std::{
 };
 
 use wayfix_appearance_cml::{
-    MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
+    ArchivedViewFormat, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal,
 };
 use wayfix_sensor_log::{Record, Stamp};
 
@@ -110,7 +110,7 @@ impl PeriodicMapSaver {
 
     fn snapshot(&mut self, system: &CmlSystem) -> Result<(), SavedViewMapError> {
         let reader = system.reader();
-        let params = MapArchiveParams {
+        let params = ArchivedViewFormat {
             views: *reader.params(),
             size: reader.size().ok_or(SavedViewMapError::NoView)?,
         };

@@ -5,11 +5,11 @@ use super::ColorSystem;
 use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
-pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawing>;
+pub type ColorEstimateRecorder = EstimateRecorder<ColorEstimateDrawing>;
 
 /// State of the drawing of [`ColorEstimateRecorder`].
 #[derive(Default)]
-pub struct ColorDrawing {
+pub struct ColorEstimateDrawing {
     n_written: usize,
     path: Vec<Pose2<f64>>,
 }
@@ -17,7 +17,7 @@ pub struct ColorDrawing {
 /// Number of frames between two writes of the whole path.
 const PATH_PERIOD: usize = 20;
 
-impl system::EstimateDrawing for ColorDrawing {
+impl system::EstimateDrawing for ColorEstimateDrawing {
     type System = ColorSystem;
 
     fn draw(

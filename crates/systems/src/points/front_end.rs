@@ -9,7 +9,7 @@ use wayfix_slam_ekf::{
 };
 
 use super::{
-    MountingParams, OdometryKind, PointSlamParams, commands::Commands, drawing,
+    MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing,
     sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
 };
 use crate::{
@@ -31,7 +31,7 @@ pub struct PointFrontEnd {
     pub(super) motion: MotionStatistics,
     plausible: IncrementPlausibilityCheck,
     /// The kind of odometry that came first.
-    pub(super) odometry: Option<OdometryKind>,
+    pub(super) odometry: Option<OdometryEncoding>,
     /// The time of the filter's state.
     pub(super) time: Stamp,
 }
@@ -93,7 +93,7 @@ impl FrontEnd for PointFrontEnd {
     fn take(&mut self, record: &Record, estimator: &mut Points) -> Result<(), String> {
         let stamp = record.stamp;
         match &record.data {
-            odometry if OdometryKind::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
+            odometry if OdometryEncoding::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
                 estimator.events.count("second_odometry_source");
                 Ok(())
             }
@@ -185,7 +185,7 @@ impl PointFrontEnd {
     }
 
     /// Whether this kind of odometry moves the robot: the kind that comes first does. A log may record one motion in two kinds.
-    fn moves_by(&mut self, odometry: OdometryKind) -> bool {
+    fn moves_by(&mut self, odometry: OdometryEncoding) -> bool {
         *self.odometry.get_or_insert(odometry) == odometry
     }
 

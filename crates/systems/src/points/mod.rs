@@ -17,4 +17,4 @@ pub use front_end::{PointFrontEnd, PointSensor, PointSystem};
 pub use params::{MountingParams, PointSlamParams, RobotProfile, RobotTimingParams};
 pub use plots::plots;
 pub use run::{PointRun, run, run_on};
-pub use state::{OdometryKind, PointState, SavedPointMap};
+pub use state::{OdometryEncoding, PointState, SavedPointMap};

@@ -18,7 +18,7 @@ pub struct PointState {
     /// The time of the filter's state, nanoseconds: earlier than the last record where the sensor is late.
     pub time: u64,
     /// The kind of odometry that moves the robot; unknown before the first.
-    pub odometry: Option<OdometryKind>,
+    pub odometry: Option<OdometryEncoding>,
     /// Commands that still act: nanoseconds, m/s, rad/s.
     pub commands: Vec<(u64, f64, f64)>,
     /// How the robot has moved by its commands.
@@ -32,7 +32,7 @@ impl FrontEndState for PointState {
 
 /// The kind of odometry that moves a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OdometryKind {
+pub enum OdometryEncoding {
     /// Velocities, each held until the next.
     Velocities,
     /// Increments.
@@ -41,7 +41,7 @@ pub enum OdometryKind {
     Drives,
 }
 
-impl OdometryKind {
+impl OdometryEncoding {
     /// The kind of a record; `None` when it is no odometry.
     pub(super) fn of(data: &RecordData) -> Option<Self> {
         match data {

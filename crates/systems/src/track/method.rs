@@ -4,7 +4,7 @@ use wayfix_visual_tracking::{
     ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TrackingCues, TrackingError,
 };
 
-use super::{FrameTracker, TargetStart, TrackParams, frame_tracker::ContourFrameTracker};
+use super::{FrameTracker, InitialTargetRegion, TrackParams, frame_tracker::ContourFrameTracker};
 
 /// Tracking method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -46,7 +46,7 @@ impl TrackingMethod {
         self,
         params: &TrackParams,
         picture: &RgbImage,
-        start: &TargetStart,
+        start: &InitialTargetRegion,
     ) -> Result<Box<dyn FrameTracker>, TrackingError> {
         let mut contour = params.contour;
         match self {
@@ -65,8 +65,8 @@ impl TrackingMethod {
             Self::ContourShapeOnly => contour.cues = TrackingCues::Shape,
         }
         let tracker = match start {
-            TargetStart::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
-            TargetStart::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
+            InitialTargetRegion::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
+            InitialTargetRegion::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
         };
         Ok(Box::new(ContourFrameTracker { tracker, space: contour.color_space }))
     }

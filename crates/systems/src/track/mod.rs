@@ -39,7 +39,7 @@ pub use output::run_history::TrackRunHistory;
 pub use params::TrackParams;
 pub use run::{TrackRun, run};
 pub use score::BoxScore;
-pub use start::TargetStart;
+pub use start::InitialTargetRegion;
 pub use status_score::LostStatusScore;
 pub use system::{TrackFrameResult, TrackSystem, TrackerConfig};
 pub use truth::{TargetTruth, TrueBoxes, parse_box};

@@ -8,21 +8,21 @@ use super::TrackSystemError;
 /// Position of the target in the first image.
 ///
 /// ```
-/// use wayfix_systems::track::TargetStart;
+/// use wayfix_systems::track::InitialTargetRegion;
 /// use wayfix_visual_tracking::{PixelMask, BoundingBox};
 /// let mask = PixelMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
-/// assert_eq!(TargetStart::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
+/// assert_eq!(InitialTargetRegion::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub enum TargetStart {
+pub enum InitialTargetRegion {
     /// A bounding box.
     Box(BoundingBox),
     /// A mask of the target's pixels.
     Mask(PixelMask),
 }
 
-impl TargetStart {
+impl InitialTargetRegion {
     /// Reads a mask from an image file: every pixel that is not black belongs to the target.
     ///
     /// # Errors

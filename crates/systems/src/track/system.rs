@@ -5,8 +5,8 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_visual_tracking::{RgbImage, TargetEstimate, TrackStatus};
 
 use super::{
-    BoxScore, FrameTracker, LostStatusScore, TargetColorDistribution, TargetStart, TargetTruth, TrackParams,
-    TrackSystemError, TrackingMethod, TrueBoxes,
+    BoxScore, FrameTracker, InitialTargetRegion, LostStatusScore, TargetColorDistribution, TargetTruth,
+    TrackParams, TrackSystemError, TrackingMethod, TrueBoxes,
 };
 use crate::system::{EventCounts, Stopwatch, System};
 
@@ -36,7 +36,7 @@ pub struct TrackerConfig {
     /// Its parameters.
     pub params: TrackParams,
     /// Position of the target in the first frame; `None` uses the first true box.
-    pub init: Option<TargetStart>,
+    pub init: Option<InitialTargetRegion>,
     /// The true boxes.
     pub truth: TrueBoxes,
     /// Frame rate of a folder, in Hz. It gives the frame number from the stamp; without it, frames are counted.
@@ -191,7 +191,7 @@ impl TrackSystem {
             let target = tracker.track_frame(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
-        let first_true_box = || self.setup.truth.at(self.next_index).target().map(TargetStart::Box);
+        let first_true_box = || self.setup.truth.at(self.next_index).target().map(InitialTargetRegion::Box);
         let Some(start) = self.setup.init.clone().or_else(first_true_box) else {
             return Ok(None);
         };

@@ -6,14 +6,14 @@
 //! [`compare_choices`] compute further metrics.
 //!
 //! ```
-//! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams};
+//! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig, ViewsParams};
 //! use wayfix_condensation::RgbImage;
 //! let pixel = |i: usize| {
 //!     let (x, y) = ((i % 160) as f64, (i / 160) as f64);
 //!     [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0].map(|phase| (60.0 * phase.sin() + 120.0) as u8)
 //! };
 //! let learned = RgbImage::from_raw(160, 120, (0..160 * 120).flat_map(pixel).collect()).expect("3 bytes a pixel");
-//! let real = SceneChange::default().of(&learned)?; // other light, some pixels aside
+//! let real = RealSceneTransform::default().of(&learned)?; // other light, some pixels aside
 //! let setup = ViewSystemConfig { view: 64, step: 16, feature: DescriptorKind::Joined, normalization: LightNormalization::WholeScene };
 //! let run = views::run(&learned, &real, &setup, &ViewsParams::default(), 10, 1, &|| ())?;
 //! assert!(run.trials.iter().filter(|trial| trial.succeeded()).count() >= 9);
@@ -44,7 +44,7 @@ pub use plots::shade;
 pub use plots::{belief_film, plots};
 pub use run::{ViewsRun, run};
 pub use scenes::composed::composed_scene_pair;
-pub use scenes::real_scene::SceneChange;
+pub use scenes::real_scene::RealSceneTransform;
 pub use scenes::register::mean_shift;
 pub use scenes::scene::{SceneImage, read_scene};
 pub use statistics::p_value_metrics;

@@ -289,7 +289,7 @@ impl WallFrontEnd {
         let step = twist.map_or(Ok(None), |twist| beam_step(scan, laser, &twist));
         if step.is_err() {
             events.warn(
-                "time_increment_implausible",
+                "scan_duration_implausible",
                 "by its time_increment a scan takes longer than a second: its beams are taken as sent at once",
             );
         } else if let Ok(Some(_)) = &step {

@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 170] = [
+const RENAMED: [(&str, &str); 172] = [
     ("accept", "gate_nis"),
     ("acquisition", "search"),
     ("active", "forgetting_rate"),
@@ -71,6 +71,7 @@ const RENAMED: [(&str, &str); 170] = [
     ("laser", "laser_pose"),
     ("leak", "kidnapping_probability"),
     ("learn_above", "learn_above_psr"),
+    ("learning_rate", "weight_learning_rate"),
     ("least_effective", "tempering_min_ess_share"),
     ("least_share_seen", "min_detection_rate"),
     ("least_turn", "min_rotation"),
@@ -101,6 +102,7 @@ const RENAMED: [(&str, &str); 170] = [
     ("mu", "quality_weights"),
     ("n_detections", "min_detections"),
     ("n_drawn", "n_sampled_trajectories"),
+    ("n_moves", "n_first_round_moves"),
     ("n_places", "n_refined_places"),
     ("n_scales", "n_scale_hypotheses"),
     ("n_searches", "n_search_places"),

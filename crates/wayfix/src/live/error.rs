@@ -3,7 +3,7 @@ use std::{io, net::SocketAddr};
 /// Errors of the live server.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum LiveError {
+pub enum LiveServerError {
     /// Another program listens there.
     #[error("{address} is in use by another program: end that one, or choose another port")]
     InUse {

@@ -10,6 +10,6 @@ mod pace;
 mod server;
 mod sink;
 
-pub use error::LiveError;
+pub use error::LiveServerError;
 pub use pace::PlaybackPace;
 pub use server::LiveServer;

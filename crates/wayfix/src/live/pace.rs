@@ -2,7 +2,7 @@ use std::{thread, time::Duration};
 
 use wayfix_sensor_log::Stamp;
 
-use super::LiveError;
+use super::LiveServerError;
 use wayfix_systems::system::Stopwatch;
 
 /// Longest pause between messages; a first stamp of 0 before present-day stamps would pause for decades.
@@ -31,10 +31,10 @@ struct Begun {
 impl PlaybackPace {
     /// `factor` times as fast as the log was recorded; 0 disables the delay. Pauses longer than five seconds are cut to five.
     /// # Errors
-    /// Returns [`LiveError::Pace`].
-    pub fn new(factor: f64) -> Result<Self, LiveError> {
+    /// Returns [`LiveServerError::Pace`].
+    pub fn new(factor: f64) -> Result<Self, LiveServerError> {
         if !factor.is_finite() || factor < 0.0 {
-            return Err(LiveError::Pace { factor });
+            return Err(LiveServerError::Pace { factor });
         }
         Ok(Self { factor, begun: None })
     }

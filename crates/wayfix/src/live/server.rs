@@ -9,7 +9,7 @@ use foxglove::{Context, FoxgloveError, WebSocketServer, WebSocketServerHandle, w
 use wayfix_sensor_log::MessageSink;
 
 use super::{
-    LiveError, PlaybackPace,
+    LiveServerError, PlaybackPace,
     audience::Audience,
     sink::{Clock, LiveSink},
 };
@@ -21,13 +21,13 @@ const GRACE: Duration = Duration::from_secs(2);
 ///
 /// It is read-only: viewers cannot change or publish anything.
 /// ```
-/// use wayfix::live::{LiveError, LiveServer, PlaybackPace};
+/// use wayfix::live::{LiveServerError, LiveServer, PlaybackPace};
 /// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateRecorder};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
 /// let estimates = SlamEstimateRecorder::<PointFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
 /// let again = LiveServer::start(server.address());
-/// assert!(matches!(again, Err(LiveError::InUse { .. })));
+/// assert!(matches!(again, Err(LiveServerError::InUse { .. })));
 /// estimates.finish()?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -45,8 +45,8 @@ impl LiveServer {
     /// Listens at `address`.
     ///
     /// # Errors
-    /// Returns [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
-    pub fn start(address: SocketAddr) -> Result<Self, LiveError> {
+    /// Returns [`LiveServerError::InUse`], [`LiveServerError::Bind`], [`LiveServerError::Server`].
+    pub fn start(address: SocketAddr) -> Result<Self, LiveServerError> {
         let (context, audience) = (Context::new(), Arc::new(Audience::default()));
         let listener = Arc::clone(&audience);
         let host = match address.ip() {
@@ -61,10 +61,10 @@ impl LiveServer {
             .listener(listener);
         let handle = server.start_blocking().map_err(|error| match error {
             FoxgloveError::Bind(source) if source.kind() == io::ErrorKind::AddrInUse => {
-                LiveError::InUse { address }
+                LiveServerError::InUse { address }
             }
-            FoxgloveError::Bind(source) => LiveError::Bind { address, source },
-            other => LiveError::Server(Box::new(other)),
+            FoxgloveError::Bind(source) => LiveServerError::Bind { address, source },
+            other => LiveServerError::Server(Box::new(other)),
         })?;
         let address = SocketAddr::new(address.ip(), handle.port());
         Ok(Self { context, handle: Arc::new(handle), audience, address })

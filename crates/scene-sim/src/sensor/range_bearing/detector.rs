@@ -82,7 +82,7 @@ impl SimulatedSensor for RangeBearingDetector {
         }
         detections.extend(self.params.clutter.draw(&self.params, &landmark_ids, streams));
         detections.sort_by(|a, b| a.bearing.total_cmp(&b.bearing));
-        let lost = deviate::chance(self.params.dropout_share, streams.of(RandomStreamPurpose::Dropout));
+        let lost = deviate::chance(self.params.scan_dropout_share, streams.of(RandomStreamPurpose::Dropout));
         (!lost).then_some(SensorReading {
             data: RecordData::Detections(detections),
             stamp_offset_ms: i64::from(self.params.latency_ms),

@@ -7,7 +7,7 @@
 //! | time-correlated error, separate for each target | `drift` | m, rad, s | `Drift` |
 //! | stamped late | `latency_ms` | ms | – |
 //! | gross outliers: range and bearing anywhere in view | `outlier_share` | share of detections | `Outlier` |
-//! | whole scans lost | `dropout_share` | share of scans | `Dropout` |
+//! | whole scans lost | `scan_dropout_share` | share of scans | `Dropout` |
 //! | missed detections | `missed_share` | share of detections | `Missed` |
 //! | false detections | `clutter` | mean number per scan | `Clutter` |
 //! | detections under another landmark's identity | `mislabelled_share` | share of detections | `Mislabel` |

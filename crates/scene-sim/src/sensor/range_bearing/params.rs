@@ -40,7 +40,7 @@ pub struct RangeBearingParams {
     /// Share of detections that are gross outliers. Default 0.
     pub outlier_share: f64,
     /// Share of scans missing from the log. (A scan without detections is logged, empty.) Default 0.
-    pub dropout_share: f64,
+    pub scan_dropout_share: f64,
     /// Share of targets in view that are not reported. Default 0.
     pub missed_share: f64,
     /// Reports of things that are not there. Default none.
@@ -88,7 +88,7 @@ impl Default for RangeBearingParams {
             drift: CorrelatedErrorParams::default(),
             latency_ms: 0,
             outlier_share: 0.0,
-            dropout_share: 0.0,
+            scan_dropout_share: 0.0,
             missed_share: 0.0,
             clutter: Clutter::default(),
             mislabelled_share: 0.0,
@@ -120,7 +120,7 @@ impl RangeBearingParams {
         check::finite("bearing bias (rad)", self.bearing_bias_rad)?;
         self.drift.validate()?;
         check::share("share of outliers", self.outlier_share)?;
-        check::share("share of dropped scans", self.dropout_share)?;
+        check::share("share of dropped scans", self.scan_dropout_share)?;
         check::share("share of missed detections", self.missed_share)?;
         self.clutter.validate()?;
         check::share("share of mislabelled detections", self.mislabelled_share)

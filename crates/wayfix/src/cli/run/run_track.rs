@@ -18,8 +18,8 @@ use wayfix_systems::{
     settings::from_toml,
     system::{Stopwatch, System},
     track::{
-        self, TargetStart, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod,
-        TrueBoxes, parse_box,
+        self, InitialTargetRegion, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig,
+        TrackingMethod, TrueBoxes, parse_box,
     },
 };
 
@@ -107,8 +107,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let stopwatch = Stopwatch::start();
     let init = match &arguments.init_mask {
-        Some(path) => Some(TargetStart::read_mask(path)?),
-        None => arguments.init.map(|init| TargetStart::Box(init.0)),
+        Some(path) => Some(InitialTargetRegion::read_mask(path)?),
+        None => arguments.init.map(|init| InitialTargetRegion::Box(init.0)),
     };
     let setup = TrackerConfig { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);

@@ -15,7 +15,7 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     settings::from_toml,
     system::Stopwatch,
-    views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig, ViewsParams},
+    views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig, ViewsParams},
 };
 
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
@@ -156,14 +156,18 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 }
 
 impl Arguments {
-    fn real_scene(&self) -> SceneChange {
-        let default = if self.learn_from.is_some() { SceneChange::UNCHANGED } else { SceneChange::default() };
+    fn real_scene(&self) -> RealSceneTransform {
+        let default = if self.learn_from.is_some() {
+            RealSceneTransform::UNCHANGED
+        } else {
+            RealSceneTransform::default()
+        };
         let light = LightChange {
             gain: self.gain.unwrap_or(default.light.gain),
             offset: self.offset.unwrap_or(default.light.offset),
             gamma: self.gamma.unwrap_or(default.light.gamma),
         };
-        SceneChange { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
+        RealSceneTransform { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
     }
 }
 

@@ -4,7 +4,7 @@ use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
 use super::settings::{ImagingConditionsKind, Settings};
 use crate::regress::PlannedJob;
-use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSystemConfig};
+use wayfix_systems::views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig};
 
 /// The learned scene and the real one, and their views.
 pub(super) struct Scenes {
@@ -27,7 +27,7 @@ impl Scenes {
                 (learned, shifted(&scene, -dx, -dy))
             }
             None => {
-                let real = SceneChange::default().of(&scene)?;
+                let real = RealSceneTransform::default().of(&scene)?;
                 (scene, real)
             }
         };

@@ -7,7 +7,7 @@ use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{
-    AzimuthDirection, ForgettingMode, Learning, LocalizerParams, MapArchive, MapArchiveParams, Start,
+    ArchivedViewFormat, AzimuthDirection, ForgettingMode, Learning, LocalizerParams, MapArchive, Start,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
@@ -181,7 +181,7 @@ impl Arguments {
         if let Some(archive) = saved {
             plan.notes.extend(cml::end_note(&archive));
             let size = plan.first_size(&mut reader).unwrap_or(archive.params().size);
-            let params = MapArchiveParams { views: *reader.params(), size };
+            let params = ArchivedViewFormat { views: *reader.params(), size };
             (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
         }
         let start = match (self.start, task, first) {
