@@ -122,7 +122,7 @@ impl AppearanceMapParams {
     /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         check::share("share of the match limit", self.match_limit_fraction)?;
-        check::share("weight learning rate", self.weight_learning_rate)?;
+        check::share("learning rate", self.weight_learning_rate)?;
         check::share("rate of forgetting", self.forgetting_rate)?;
         check::share("min_weight of a place", self.min_weight)?;
         check::positive("max_observation_count of a place", self.max_observation_count)?;
