@@ -138,6 +138,23 @@ fn search_alone_makes_the_odds_even_at_most() {
 }
 
 #[test]
+fn all_proposals_of_a_search_share_even_odds() {
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    let found = |hypothesis, log_likelihood_ratio| RelocalizationCandidate {
+        hypothesis,
+        prior: 0.1,
+        log_likelihood_ratio,
+    };
+    relocalization
+        .propose([found(1, 50.0), found(2, 50.0 - 3_f64.ln()), found(3, 50.0 - 3_f64.ln())])
+        .unwrap();
+    assert!((relocalization.probability() - 0.5).abs() < 1e-12);
+    // They keep their ratios: 3 to 1 to 1.
+    let [best, other, _] = relocalization.alternatives() else { panic!("three") };
+    assert!((best.statistic() / other.statistic() - 3.0).abs() < 1e-9);
+}
+
+#[test]
 fn unknown_start_is_decided_at_even_odds() {
     let mut present = 0;
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();

@@ -118,7 +118,7 @@ impl PixelLikelihoodParams {
         check("number of effective pixels", n_effective_pixels, n_effective_pixels > 0.0)?;
         check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share <= 1.0)?;
         check(
-            "uneven light",
+            "brightness variation",
             brightness_variation,
             brightness_variation >= 0.0 && brightness_variation.is_finite(),
         )
