@@ -4,8 +4,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceMapError, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance,
-    PanoramaBoundTable, PanoramaDescriptor, ReferenceId, ReferenceSearch,
+    AppearanceIndex, AppearanceMapError, LinearSearch, LowerBoundTable, LowerBoundedDistance,
+    PanoramaDescriptor, PanoramaLowerBoundTable, ReferenceId, ReferenceSearch, ViewDescriptor,
 };
 
 const QUERY_SEED: u64 = 17;
@@ -100,7 +100,7 @@ fn bounds_keep_their_order() {
     let mut walk = Walk::new(QUERY_SEED);
     let views: Vec<PanoramaDescriptor> = (0..120).map(|_| walk.next()).collect();
     let invariants: Vec<Vec<f64>> = views.iter().map(LowerBoundedDistance::invariants).collect();
-    let mut table = PanoramaBoundTable::default();
+    let mut table = PanoramaLowerBoundTable::default();
     views.iter().enumerate().for_each(|(slot, view)| table.put(slot, view));
     for (a, b) in (0..120 * 120).map(|pair| (pair / 120, pair % 120)) {
         let difference = invariants[a].iter().zip(&invariants[b]).map(|(x, y)| (x - y).powi(2));

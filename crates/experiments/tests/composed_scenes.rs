@@ -7,7 +7,7 @@ use std::fs;
 
 use common::experiments;
 use wayfix_condensation::{DiscreteStateSpace, RgbImage, ViewGrid};
-use wayfix_evaluation::report::{Metric, Report, ReportRun};
+use wayfix_evaluation::report::{FullReport, Metric, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 use wayfix_systems::views::{
     self, DescriptorKind, LightNormalization, ViewSystemConfig, ViewsParams, ViewsRun,
@@ -108,7 +108,7 @@ fn regress() -> Vec<ReportRun> {
     let paths = [folder.path(), out.as_path()].map(|path| path.to_str().unwrap().to_owned());
     let outcome = experiments(["regress", "views", "--quick", "--fixtures", &paths[0], "--out", &paths[1]]);
     assert_eq!(outcome.code, 1, "a scene that does not exist fails: {}", outcome.stderr);
-    let report: Report = serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    let report: FullReport = serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
     report.suites.into_iter().flat_map(|suite| suite.runs).collect()
 }
 

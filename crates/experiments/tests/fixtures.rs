@@ -7,7 +7,7 @@ use wayfix_experiments::fixtures::{
     StoredFixture, StoredFixtureDifference, StoredFixtureError, build, check,
 };
 use wayfix_scene_sim::Scenario;
-use wayfix_sensor_log::{OpenOptions, open};
+use wayfix_sensor_log::{LogOpenOptions, open};
 
 const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 
@@ -38,7 +38,7 @@ fn a_stored_log_reads_back_as_simulated() {
         let simulated =
             scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed)).expect("valid parameters");
         let path = Path::new(STORED).join(scenario.name).with_extension("mcap");
-        let (records, report) = open(path, &OpenOptions::default()).expect("a log").read_all();
+        let (records, report) = open(path, &LogOpenOptions::default()).expect("a log").read_all();
         assert_eq!(report.n_problems(), 0, "{}", scenario.name);
         assert_eq!(records, simulated, "{}", scenario.name);
     }

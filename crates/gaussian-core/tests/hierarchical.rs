@@ -7,8 +7,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_gaussian_core::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalParams, InverseWishart, IterationError, MeanPrior,
-    fit_hierarchical,
+    Gaussian, GaussianError, GroupStatistics, HierarchicalGaussianParams, InverseWishart, IterationError,
+    MeanPrior, fit_hierarchical,
 };
 
 const D: usize = 6;
@@ -61,8 +61,11 @@ fn the_objective_never_falls() {
         let n = [3, 10, 40][seed as usize % 3];
         let groups = draw_groups(&known_prior(seed + 1000), n, &mut rng);
         let mean_prior = (seed % 2 == 0).then(|| MeanPrior { mean: DVector::zeros(D), pseudo_groups: 0.01 });
-        let params =
-            HierarchicalParams { covariance_prior: hyperprior(4.0), mean_prior, ..Default::default() };
+        let params = HierarchicalGaussianParams {
+            covariance_prior: hyperprior(4.0),
+            mean_prior,
+            ..Default::default()
+        };
         let fit = fit_hierarchical(&groups, &params).unwrap();
         assert!(fit.iterations() > 2, "seed {seed} had nothing to climb");
         for pair in fit.objective.windows(2) {
@@ -84,7 +87,7 @@ fn a_known_prior_is_recovered_within_sampling_error() {
     let fits: Vec<_> = (0..SETS)
         .map(|seed| {
             let groups = draw_groups(&truth, GROUPS, &mut ChaCha8Rng::seed_from_u64(100 + seed as u64));
-            let params = HierarchicalParams { covariance_prior: prior.clone(), ..Default::default() };
+            let params = HierarchicalGaussianParams { covariance_prior: prior.clone(), ..Default::default() };
             fit_hierarchical(&groups, &params).unwrap().gaussian
         })
         .collect();
@@ -125,13 +128,13 @@ fn exact_complete_observations_give_the_sample_moments() {
         .collect();
     let mean = samples.iter().sum::<DVector<f64>>() / 20.0;
     let scatter = samples.iter().map(|x| (x - &mean) * (x - &mean).transpose()).sum::<DMatrix<f64>>();
-    let fit = fit_hierarchical(&groups, &HierarchicalParams::default()).unwrap();
+    let fit = fit_hierarchical(&groups, &HierarchicalGaussianParams::default()).unwrap();
     // Means of size 10, conditioning below 100: some dozen roundings.
     assert_abs_diff_eq!(fit.gaussian.mean(), &mean, epsilon = 1e-13);
     assert_abs_diff_eq!(*fit.gaussian.covariance(), &scatter / 20.0, epsilon = 1e-12);
     // With a hyperprior: its scale and degrees of freedom join in. [Gelman et al. 2003, section 3.6]
     let prior = hyperprior(2.0).unwrap();
-    let params = HierarchicalParams { covariance_prior: Some(prior.clone()), ..Default::default() };
+    let params = HierarchicalGaussianParams { covariance_prior: Some(prior.clone()), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
     let expected = (scatter + prior.scale()) / (20.0 + PSEUDO_GROUPS);
     assert_abs_diff_eq!(*fit.gaussian.covariance(), expected, epsilon = 1e-12);
@@ -140,7 +143,7 @@ fn exact_complete_observations_give_the_sample_moments() {
 #[test]
 fn silent_groups_change_nothing() {
     let mut groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
-    let params = HierarchicalParams { covariance_prior: hyperprior(4.0), ..Default::default() };
+    let params = HierarchicalGaussianParams { covariance_prior: hyperprior(4.0), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
     groups.push(GroupStatistics::new(D));
     assert_eq!(fit_hierarchical(&groups, &params).unwrap(), fit);
@@ -149,15 +152,16 @@ fn silent_groups_change_nothing() {
 #[test]
 fn what_determines_no_gaussian_is_refused() {
     let groups = draw_groups(&known_prior(1), D, &mut ChaCha8Rng::seed_from_u64(1));
-    let flat = HierarchicalParams::default();
-    let step =
-        |groups: &[GroupStatistics], params: &HierarchicalParams| match fit_hierarchical(groups, params) {
-            Err(IterationError::Step(error)) => error,
-            other => panic!("expected a refusal, got {other:?}"),
-        };
+    let flat = HierarchicalGaussianParams::default();
+    let step = |groups: &[GroupStatistics], params: &HierarchicalGaussianParams| match fit_hierarchical(
+        groups, params,
+    ) {
+        Err(IterationError::Step(error)) => error,
+        other => panic!("expected a refusal, got {other:?}"),
+    };
     assert!(matches!(step(&groups, &flat), GaussianError::TooFew { needed: 7, got: 6, .. }));
     assert!(matches!(step(&[], &flat), GaussianError::Empty { .. }));
-    let with_prior = HierarchicalParams { covariance_prior: hyperprior(1.0), ..flat.clone() };
+    let with_prior = HierarchicalGaussianParams { covariance_prior: hyperprior(1.0), ..flat.clone() };
     assert!(matches!(step(&[GroupStatistics::new(2)], &with_prior), GaussianError::Dimension { .. }));
     assert_eq!(step(&[GroupStatistics::new(D)], &with_prior), GaussianError::Unobserved { coordinate: 0 });
     // The same exact vector again and again has no covariance.
@@ -165,20 +169,20 @@ fn what_determines_no_gaussian_is_refused() {
     group.observe(&[0], &[2.0], &[0.0]).unwrap();
     assert!(matches!(step(&vec![group; 5], &flat), GaussianError::NotPositiveDefinite { .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let params = HierarchicalParams { tolerance: bad, ..with_prior.clone() };
+        let params = HierarchicalGaussianParams { tolerance: bad, ..with_prior.clone() };
         assert!(matches!(step(&groups, &params), GaussianError::Parameter { .. }));
         let mean_prior = Some(MeanPrior { mean: DVector::zeros(D), pseudo_groups: bad });
-        let params = HierarchicalParams { mean_prior, ..with_prior.clone() };
+        let params = HierarchicalGaussianParams { mean_prior, ..with_prior.clone() };
         assert!(matches!(step(&groups, &params), GaussianError::Parameter { .. }));
     }
     let mean_prior = Some(MeanPrior { mean: DVector::from_element(D, f64::NAN), pseudo_groups: 1.0 });
-    let params = HierarchicalParams { mean_prior, ..with_prior };
+    let params = HierarchicalGaussianParams { mean_prior, ..with_prior };
     assert!(matches!(step(&groups, &params), GaussianError::NotFinite { .. }));
 }
 
 #[test]
 fn both_hyperpriors_speak_where_no_group_does() {
-    let params = HierarchicalParams {
+    let params = HierarchicalGaussianParams {
         covariance_prior: hyperprior(4.0),
         mean_prior: Some(MeanPrior { mean: DVector::from_element(D, 3.0), pseudo_groups: 1.0 }),
         ..Default::default()
@@ -193,8 +197,11 @@ fn both_hyperpriors_speak_where_no_group_does() {
 #[test]
 fn iteration_limit_error_carries_the_last_estimate() {
     let groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
-    let params =
-        HierarchicalParams { covariance_prior: hyperprior(4.0), max_iterations: 3, ..Default::default() };
+    let params = HierarchicalGaussianParams {
+        covariance_prior: hyperprior(4.0),
+        max_iterations: 3,
+        ..Default::default()
+    };
     match fit_hierarchical(&groups, &params) {
         Err(IterationError::NotConverged { last, iterations: 3, .. }) => {
             assert_eq!(last.iterations(), 3);

@@ -5,23 +5,23 @@ use std::vec;
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
-use crate::{BagTopic, LogFormat, ReadReport, Record};
+use crate::{BagTopic, LogFormat, LogReadReport, Record};
 
 /// An open log: an iterator over its records in time order, with metadata.
 ///
 /// Iterate by reference to keep access to the report: for streamed formats it is complete only at the end.
 pub struct Log {
-    meta: LogMeta,
+    meta: LogMetadata,
     /// The record that was read to see whether there is one.
     first: Option<Record>,
     rest: Records,
-    report: ReadReport,
+    report: LogReadReport,
 }
 
 /// Metadata of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct LogMeta {
+pub struct LogMetadata {
     /// The storage format.
     pub format: LogFormat,
     /// The original format of a [converted](crate::convert) log, if stored in it.
@@ -36,7 +36,7 @@ pub struct LogMeta {
     pub topics: Vec<BagTopic>,
 }
 
-impl LogMeta {
+impl LogMetadata {
     /// The original format of the records if known, else MCAP.
     pub fn first_format(&self) -> LogFormat {
         self.origin.unwrap_or(self.format)
@@ -53,7 +53,7 @@ pub(crate) enum Records {
 
 impl Records {
     /// The next record in time order; problems go into the report.
-    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
         match self {
             Self::Memory(records) => records.next(),
             Self::Mcap(records) => records.next(report),
@@ -64,19 +64,19 @@ impl Records {
 }
 
 impl Log {
-    pub(crate) fn new(meta: LogMeta, first: Record, rest: Records, report: ReadReport) -> Self {
+    pub(crate) fn new(meta: LogMetadata, first: Record, rest: Records, report: LogReadReport) -> Self {
         Self { meta, first: Some(first), rest, report }
     }
     /// Metadata of the log.
-    pub fn meta(&self) -> &LogMeta {
+    pub fn meta(&self) -> &LogMetadata {
         &self.meta
     }
     /// Report of the reading so far.
-    pub fn report(&self) -> &ReadReport {
+    pub fn report(&self) -> &LogReadReport {
         &self.report
     }
     /// All remaining records, and the complete report.
-    pub fn read_all(mut self) -> (Vec<Record>, ReadReport) {
+    pub fn read_all(mut self) -> (Vec<Record>, LogReadReport) {
         let records = self.by_ref().collect();
         (records, self.report)
     }

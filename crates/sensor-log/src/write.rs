@@ -9,14 +9,14 @@ use crate::{LogError, LogFormat, McapWriter, Record};
 
 /// Report of writing a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub struct WriteReport {
+pub struct LogWriteReport {
     /// Records that went into the file.
     pub records_written: u64,
     /// Count of the skipped records by kind, which the format cannot store.
     pub left_out: BTreeMap<&'static str, u64>,
 }
 
-impl WriteReport {
+impl LogWriteReport {
     pub(crate) fn leave_out(&mut self, what: &'static str) {
         *self.left_out.entry(what).or_default() += 1;
     }
@@ -28,12 +28,12 @@ impl WriteReport {
 /// robots and unknown codes. TUM stores only poses. The report counts the skipped records.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{RecordData, LogFormat, OpenOptions, Record, Stamp, open, write};
+/// use wayfix_sensor_log::{RecordData, LogFormat, LogOpenOptions, Record, Stamp, open, write};
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("log.mcap");
 /// let record = Record { stamp: Stamp::from_nanoseconds(7), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
 /// write(&path, LogFormat::Mcap, [record.clone()])?;
-/// assert_eq!(open(&path, &OpenOptions::default())?.read_all().0, [record]);
+/// assert_eq!(open(&path, &LogOpenOptions::default())?.read_all().0, [record]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -43,7 +43,7 @@ pub fn write(
     path: impl AsRef<Path>,
     format: LogFormat,
     records: impl IntoIterator<Item = Record>,
-) -> Result<WriteReport, LogError> {
+) -> Result<LogWriteReport, LogError> {
     write_from(path.as_ref(), format, format, records)
 }
 
@@ -53,8 +53,8 @@ pub(crate) fn write_from(
     format: LogFormat,
     origin: LogFormat,
     records: impl IntoIterator<Item = Record>,
-) -> Result<WriteReport, LogError> {
-    let mut report = WriteReport::default();
+) -> Result<LogWriteReport, LogError> {
+    let mut report = LogWriteReport::default();
     match format {
         LogFormat::Utias
         | LogFormat::VictoriaPark
@@ -99,7 +99,7 @@ pub(crate) fn write_from(
     Ok(report)
 }
 
-impl fmt::Display for WriteReport {
+impl fmt::Display for LogWriteReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} records written", self.records_written)?;
         for (what, count) in &self.left_out {

@@ -6,16 +6,16 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_sensor_log::{OpenOptions, ReadReport, Record, RecordData, open};
+use wayfix_sensor_log::{LogOpenOptions, LogReadReport, Record, RecordData, open};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
     let ranges = format!("{range} ").repeat(n_beams);
     format!("FLASER {n_beams} {ranges}{pose} {odometry} {seconds} host {seconds}\n")
 }
 
-fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
+fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, LogReadReport) {
     fs::write(path, bytes).unwrap();
-    open(path, &OpenOptions::default()).unwrap().read_all()
+    open(path, &LogOpenOptions::default()).unwrap().read_all()
 }
 
 fn n_scans(records: &[Record]) -> usize {
@@ -23,7 +23,7 @@ fn n_scans(records: &[Record]) -> usize {
 }
 
 /// The warnings of a log, by name.
-fn warned(report: &ReadReport) -> Vec<&str> {
+fn warned(report: &LogReadReport) -> Vec<&str> {
     report.warnings.iter().map(|warning| warning.name).collect()
 }
 

@@ -37,8 +37,8 @@ mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{
-    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds, NearestNeighbour,
-    NearestNeighbourParams,
+    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIdAssociation,
+    NearestNeighbour, NearestNeighbourParams,
 };
 pub use error::SlamError;
 pub use filter::{
@@ -47,10 +47,11 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
-    DriftingPoseSensor, MonobotMotion, MonobotSensor, MotionWithRangeScale, MountedSensor, OdometryMotion,
-    PLANAR_SYMMETRIES, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
-    RelativePosition, RelativePositionSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, MonobotMotion, MonobotSensor,
+    MotionWithHeadingDrift, MotionWithRangeScale, MountedSensor, OdometryMotion, PLANAR_SYMMETRIES,
+    PoseWithHeadingDrift, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
+    RelativePosition, RelativePositionSensor, SensorWithHeadingDrift, VelocityControl, VelocityMotion,
+    point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};

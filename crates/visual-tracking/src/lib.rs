@@ -2,11 +2,11 @@
 //!
 //! | part | content |
 //! | --- | --- |
-//! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
+//! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ColorContourTracker`] (an outline) |
 //! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`ColorBinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
 //! | masks | [`PixelMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
-//! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
-//! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
+//! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdgeSearch`] or [`MaskEdgeSearch`] |
+//! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedColorDynamics`] |
 //!
 //! Andrade-Cetto & Sanfeliu, *Active perception in changing light*, section 3. Pictures are [`RgbImage`]s of the crate `image`; no files are opened.
 
@@ -28,16 +28,18 @@ pub use color::{
     ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, CustomColorSpace, RowSpans,
     SlidingHistogram,
 };
-pub use contour::{ColorHypothesisAgreement, ContourTracker, ContourTrackerParams, TrackingCues};
+pub use contour::{ColorContourTracker, ColorContourTrackerParams, ColorHypothesisAgreement, TrackingCues};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use distribution::{
-    AffineColorMap, COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorStateVector, LearnedDynamics,
-    PrincipalColors,
+    AffineColorMap, COLOR_DIM, ColorCloud, ColorDistributionState, ColorDynamics, ColorStateVector,
+    LearnedColorDynamics, PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
+pub use head::{HeadSizeFromSearch, HeadSizeSource, HeadTracker, HeadTrackerParams};
 pub use image::RgbImage;
 pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
 pub use pixel_rect::PixelRect;
-pub use snake::{AffineMap, AffineSnake, ColorEdges, EdgeSearch, MaskEdges, Outline, SnakeFit, SnakeParams};
+pub use snake::{
+    AffineMap, AffineSnake, ColorEdgeSearch, EdgeSearch, MaskEdgeSearch, Outline, SnakeFit, SnakeParams,
+};
 pub use tracker::{TargetEstimate, TrackStatus, Tracker};

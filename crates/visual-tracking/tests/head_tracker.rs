@@ -6,7 +6,7 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BoundingBox, HeadTracker, HeadTrackerParams, PixelMask, RgbImage, ScaleSource, TrackStatus, Tracker,
+    BoundingBox, HeadSizeSource, HeadTracker, HeadTrackerParams, PixelMask, RgbImage, TrackStatus, Tracker,
     TrackingError,
 };
 
@@ -82,7 +82,7 @@ fn colours_that_adapt_follow_the_light() {
 #[test]
 fn the_scale_is_searched_or_comes_from_outside() {
     struct Stereo;
-    impl ScaleSource for Stereo {
+    impl HeadSizeSource for Stereo {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(1.5)
         }
@@ -102,7 +102,7 @@ fn the_scale_is_searched_or_comes_from_outside() {
 #[test]
 fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     struct Broken;
-    impl ScaleSource for Broken {
+    impl HeadSizeSource for Broken {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(f64::NAN)
         }
@@ -110,7 +110,7 @@ fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     let shown = picture([53.0, 60.0], 0.35, 1.0, 1.0);
     let mut broken = started().with_scale_source(Broken);
     assert!(matches!(broken.track(&shown, &mut rng()), Err(TrackingError::Parameter { .. })));
-    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::SearchedScale);
+    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::HeadSizeFromSearch);
     assert_eq!(repaired.track(&shown, &mut rng()), started().track(&shown, &mut rng()));
 }
 

@@ -12,7 +12,7 @@ use super::{
     interpolate,
 };
 use crate::{
-    AppearanceMapError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared,
+    AppearanceMapError, ReferenceId, ReferenceMatch, ReferenceSearch, ViewDescriptor, separation_squared,
     similarity,
 };
 
@@ -31,11 +31,11 @@ pub struct MapUpdate {
     pub matched: usize,
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Learns that the view was seen from this pose. [Gross et al. 2005, Sec. 2.3]
     ///
     /// The three steps of the paper: insertion of a new reference if none matches; update of the places of matching references;
-    /// adaptation of the weights. `gate` is [`FusionParams::gate`](crate::FusionParams::gate).
+    /// adaptation of the weights. `gate` is [`MixtureFusionParams::gate`](crate::MixtureFusionParams::gate).
     ///
     /// # Errors
     /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left;

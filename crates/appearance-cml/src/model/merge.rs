@@ -35,7 +35,7 @@ pub(super) fn merged(
         .map_err(GaussianError::from)?;
     Ok(PlaceComponent {
         weight: (a.weight + b.weight).min(1.0),
-        count: (a.count + b.count).min(params.max_observation_count),
+        count: (a.count + b.count).min(params.max_effective_observation_count),
         gaussian,
     })
 }

@@ -3,7 +3,9 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::comparing::place_match::turned;
-use super::{AppearanceMapParams, ForgettingUncertainty, PlaceComponent, PlaceUpdateRule, ViewDistanceScale};
+use super::{
+    AppearanceMapParams, ForgettingUncertainty, PlaceComponent, PlaceUpdateRule, ViewDifferenceModel,
+};
 use crate::{AppearanceMapError, ReferenceMatch, separation_squared, similarity};
 
 /// The weight of a place whose reference matches: it grows if the robot is there and falls if the robot is elsewhere.
@@ -14,7 +16,7 @@ pub(super) fn weight_when_seen(
     matched: &ReferenceMatch,
     pose: &Gaussian<Pose2<f64>>,
     (limit, gate): (f64, f64),
-    (scale, params): (&ViewDistanceScale, &AppearanceMapParams),
+    (scale, params): (&ViewDifferenceModel, &AppearanceMapParams),
 ) -> Result<f64, AppearanceMapError> {
     let gain = params.weight_learning_rate * similarity(matched.comparison.distance, limit);
     let seen_from = turned(&place.gaussian, matched.comparison.rotation);
@@ -36,7 +38,7 @@ pub(super) fn weight_when_missed(
     place: &PlaceComponent,
     pose: &Gaussian<Pose2<f64>>,
     radius: f64,
-    (scale, params): (&ViewDistanceScale, &AppearanceMapParams),
+    (scale, params): (&ViewDifferenceModel, &AppearanceMapParams),
 ) -> f64 {
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);

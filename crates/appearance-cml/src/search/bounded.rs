@@ -1,4 +1,4 @@
-use super::{BoundTable, Descriptor, ViewDifference};
+use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 
 /// A descriptor whose distance can be bounded from below for less than it costs: what an exact index needs.
 ///
@@ -7,18 +7,18 @@ use super::{BoundTable, Descriptor, ViewDifference};
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, Descriptor, NoBoundTable};
+/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, ViewDescriptor, NoLowerBoundTable};
 /// /// A colour that looks the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
-/// impl Descriptor for Grey {
+/// impl ViewDescriptor for Grey {
 ///     fn compare(&self, reference: &Self) -> ViewDifference {
 ///         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
 ///     }
 /// }
 /// impl LowerBoundedDistance for Grey {
 ///     type Probe = Grey;
-///     type Table = NoBoundTable;
+///     type Table = NoLowerBoundTable;
 ///     fn invariants(&self) -> Vec<f64> {
 ///         vec![self.0]
 ///     }
@@ -37,11 +37,11 @@ use super::{BoundTable, Descriptor, ViewDifference};
 /// }
 /// assert_eq!(Grey(3.0).bound(&Grey(5.0), 1.0), 2.0);
 /// ```
-pub trait LowerBoundedDistance: Descriptor + Sized {
+pub trait LowerBoundedDistance: ViewDescriptor + Sized {
     /// A view made ready to be compared with many references.
     type Probe;
     /// The first numbers of many references, side by side.
-    type Table: BoundTable<Self>;
+    type Table: LowerBoundTable<Self>;
 
     /// Numbers that do not depend on the heading.
     fn invariants(&self) -> Vec<f64>;

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    BoundTable, LowerBoundedDistance, ReferenceId, ReferenceMatch, ReferenceSearch,
+    LowerBoundTable, LowerBoundedDistance, ReferenceId, ReferenceMatch, ReferenceSearch,
     box_tree::BoxTree,
     nearest::{Candidate, Nearest, by_distance},
     projection::{Projection, Sketch},
@@ -13,7 +13,7 @@ use crate::AppearanceMapError;
 ///
 /// Four stages, each a lower bound of the distance that is sharper and dearer than the one before:
 /// 1. sixteen numbers a view, the directions in which the invariants of the map spread most, in a tree of boxes: whole branches are passed over;
-/// 2. the first numbers of each, side by side in memory ([`BoundTable`](super::BoundTable));
+/// 2. the first numbers of each, side by side in memory ([`LowerBoundTable`](super::LowerBoundTable));
 /// 3. the descriptors' own [`bound`](LowerBoundedDistance::bound), as sharp as need be;
 /// 4. the distance itself, with its rotation.
 ///

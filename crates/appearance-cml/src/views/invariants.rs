@@ -1,4 +1,4 @@
-use super::{PanoramaBoundTable, PanoramaDescriptor, PanoramaQuery};
+use super::{PanoramaDescriptor, PanoramaLowerBoundTable, PanoramaQuery};
 use crate::{LowerBoundedDistance, ViewDifference};
 
 /// Harmonics whose phases between rings count; of the others only how strong they are.
@@ -18,7 +18,7 @@ const N_CONSTANT_COSINES: usize = 8;
 /// $`(|a'| - |b'|)² + |a'||b'|(1 - c²) ≤ (|a'| - |b'|)² + 2|a'||b'|(1 - c) = d'^2`$. All of these are coordinates of a Euclidean space.
 impl LowerBoundedDistance for PanoramaDescriptor {
     type Probe = PanoramaQuery;
-    type Table = PanoramaBoundTable;
+    type Table = PanoramaLowerBoundTable;
 
     fn invariants(&self) -> Vec<f64> {
         let scale = f64::from(self.scale());

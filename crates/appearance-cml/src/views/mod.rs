@@ -20,10 +20,10 @@ mod sectors;
 mod table;
 
 pub use descriptor::PanoramaDescriptor;
-pub use features::PanoramaFeatures;
+pub use features::PanoramaDescriptorExtractor;
 pub use normalization::{BrightnessNormalization, IntensityScale};
-pub use omnidirectional_ring::{OmnidirectionalRing, RingOrientation};
+pub use omnidirectional_ring::{OmnidirectionalRing, RingVerticalOrientation};
 pub use panorama::{AzimuthDirection, Panorama};
-pub use params::PanoramaParams;
+pub use params::PanoramaDescriptorParams;
 pub use probe::PanoramaQuery;
-pub use table::PanoramaBoundTable;
+pub use table::PanoramaLowerBoundTable;

@@ -1,7 +1,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{check_size, check_state};
-use crate::{AppearanceModel, CondensationError, DescriptorTable};
+use crate::{AppearanceModel, CondensationError, StateDescriptorTable};
 
 /// Least, greatest and mean p-value over pairs, as in the paper's Tables 1 and 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl AppearanceModel {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the table is of other states or features.
-    pub fn p_values_of(&self, seen: &DescriptorTable) -> Result<PValueStatistics, CondensationError> {
+    pub fn p_values_of(&self, seen: &StateDescriptorTable) -> Result<PValueStatistics, CondensationError> {
         check_size("table of features", self.n_states(), seen.n_states())?;
         check_size("feature vector", self.n_components, seen.n_components())?;
         let each = seen.rows().enumerate().map(|(state, row)| self.tail_probability(state, row));

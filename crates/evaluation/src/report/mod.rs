@@ -1,6 +1,6 @@
 //! Report of a run or a regression test: figures with their bounds, pictures, and provenance.
 //!
-//! A [`Report`] holds [`ReportSuite`]s of [`ReportRun`]s of [`Metric`]s. [`Report::write`] writes `report.json` (the interface for programs) and `index.html`
+//! A [`FullReport`] holds [`ReportSuite`]s of [`ReportRun`]s of [`Metric`]s. [`FullReport::write`] writes `report.json` (the interface for programs) and `index.html`
 //! (one page that works offline, for people) to a folder. [`table`] formats it for the terminal, and [`RunSummary`] is the object that
 //! `wayfix run --json` prints.
 //!
@@ -19,7 +19,7 @@ mod write;
 
 pub use layout::foxglove_layout;
 pub use metric::{ConfidenceInterval, Metric, PeerValue};
-pub use model::{Report, ReportRun, ReportSuite};
+pub use model::{FullReport, ReportRun, ReportSuite};
 pub use provenance::{MachineInfo, commit};
 pub use run_summary::RunSummary;
 pub use tally::PassFailCount;

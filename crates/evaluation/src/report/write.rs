@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{Report, html};
+use super::{FullReport, html};
 
 /// Errors of writing a report.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +20,7 @@ pub enum ReportError {
     Json(#[from] serde_json::Error),
 }
 
-impl Report {
+impl FullReport {
     /// Writes `report.json` and `index.html` to `folder`, which is created if missing.
     /// # Errors
     /// Returns an error if the folder or a file cannot be written.

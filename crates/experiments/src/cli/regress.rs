@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{self, print};
 
 use crate::regress::{CampaignShard, RegressOptions, ShardResults, assemble, cells, run_shard, suites};
-use wayfix_evaluation::report::{Report, table, table::TableStyle};
+use wayfix_evaluation::report::{FullReport, table, table::TableStyle};
 
 /// Run every system on the stored logs, and on public recordings if available, and compare the figures with their bounds.
 ///
@@ -85,7 +85,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 }
 
 /// Writes the report, prints it, and judges it.
-pub(super) fn show(report: &Report, out: &Path) -> Result<ExitCode> {
+pub(super) fn show(report: &FullReport, out: &Path) -> Result<ExitCode> {
     report.write(out)?;
     print(table::report(report, TableStyle::of_stdout()))?;
     print(format!("{0}/index.html  {0}/report.json\n", out.display()))?;

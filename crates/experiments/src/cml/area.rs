@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::world::SensorWorld;
 
 use super::localize_trip::known_start;
@@ -40,9 +40,9 @@ pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     for (name, lap) in [("first", 0), ("second", 1), ("last", N_LAPS - 1)] {
         metrics.extend(mean_of(&format!("error_mean_m_{name}_lap"), "m", &seeds, error(lap)));
     }
-    metrics.extend(ratio_of("last_lap_over_first", &seeds, error(N_LAPS - 1), error(0)));
-    metrics.extend(ratio_of("last_lap_over_second", &seeds, error(N_LAPS - 1), error(1)));
-    metrics.extend(mean_of("references", "", &seeds, |lapped| {
+    metrics.extend(ratio_of("error_mean_ratio_last_over_first_lap", &seeds, error(N_LAPS - 1), error(0)));
+    metrics.extend(ratio_of("error_mean_ratio_last_over_second_lap", &seeds, error(N_LAPS - 1), error(1)));
+    metrics.extend(mean_of("n_references", "", &seeds, |lapped| {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
     let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
@@ -56,7 +56,7 @@ pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Lapped> {
     let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
-    let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
+    let params = IndoorDriveParams { drive: robot(seed), ..IndoorDriveParams::default() };
     let trip = SimulatedDrive::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
     let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, published) = (with(setup.localizer)?, with(LocalizerParams::as_published())?);

@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
 use wayfix_scene_sim::random::RandomStreams;
 
 use crate::error_quantiles::error_quantiles;
@@ -53,10 +53,10 @@ pub fn global_start(
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     let trials = trials(seeds, |seed| {
-        let drive = LeagueParams {
+        let drive = LeagueDriveParams {
             n_frames: FRAMES,
             lamp_settings: vec![(0, lighting(seed))],
-            ..LeagueParams::default()
+            ..LeagueDriveParams::default()
         };
         trial(seed, drive, Some(StartPose::Anywhere), map, bank, params)
     })?;
@@ -75,11 +75,11 @@ pub fn kidnapped(
 ) -> Result<ConvergenceCount> {
     const BEFORE: usize = 40;
     let trials = trials(seeds, |seed| {
-        let drive = LeagueParams {
+        let drive = LeagueDriveParams {
             n_frames: BEFORE + FRAMES,
             kidnap_frames: vec![BEFORE],
             lamp_settings: vec![(0, lighting(seed))],
-            ..LeagueParams::default()
+            ..LeagueDriveParams::default()
         };
         trial(seed, drive, None, map, bank, params)
     })?;
@@ -100,7 +100,7 @@ fn trials(
 
 fn trial(
     seed: u64,
-    drive: LeagueParams,
+    drive: LeagueDriveParams,
     start: Option<StartPose>,
     map: &Arc<ColorMap>,
     bank: &LightingBank,
@@ -155,8 +155,8 @@ impl ConvergenceCount {
                 Metric::new("success_share", n_succeeded as f64 / n.max(1) as f64, ""),
                 Metric::new("success_share_low95", low, ""),
                 Metric::new("success_share_high95", high, ""),
-                Metric::new("near_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
-                Metric::new("n_confident_failures", n_deceived as f64, ""),
+                Metric::new("near_truth_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
+                Metric::new("n_failures_reported_as_tracking", n_deceived as f64, ""),
             ],
             figures: vec![self.plot().draw()?],
             notes,

@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
 
@@ -37,7 +37,8 @@ pub fn other_halls(
     let value = |run: &ReportRun, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
     let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
     let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
-    let errors = [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("odometry_position_mean_m", "m")];
+    let errors =
+        [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("dead_reckoning_position_error_mean_m", "m")];
     let overall = [("classification_rate", "")];
     let named = overall.into_iter().chain(errors).map(|(name, unit)| (name.to_owned(), unit));
     for (name, unit) in named.chain(rates) {
@@ -53,6 +54,6 @@ pub fn other_halls(
 
 /// The drive of the stored logs in its own hall.
 pub(super) fn drive(seed: u64, lighting: LampSetting) -> Result<Vec<Record>> {
-    let drive = LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() };
+    let drive = LeagueDriveParams { lamp_settings: vec![(0, lighting)], ..LeagueDriveParams::default() };
     Ok(drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

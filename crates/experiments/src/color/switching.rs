@@ -52,7 +52,11 @@ pub fn switching(
             mean(curve.iter().map(|point| point.1)),
             "",
         ));
-        metrics.push(Metric::new(format!("{name}_worst_drop"), worst_drop(curve, switches), ""));
+        metrics.push(Metric::new(
+            format!("{name}_classification_rate_worst_drop_at_switch"),
+            worst_drop(curve, switches),
+            "",
+        ));
     }
     let figures = vec![
         plot("Classification rate while lights are switched, localizing", &curves).draw()?,

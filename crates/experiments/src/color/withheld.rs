@@ -65,8 +65,9 @@ pub fn withheld_in_halls(
 fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
     let mean_of = |what: &str, values: &[f64]| {
-        MeanInterval::of(values)
-            .map(|mean| (Metric::of_mean(&format!("withheld_{name}_rate_{what}"), &mean, ""), mean))
+        MeanInterval::of(values).map(|mean| {
+            (Metric::of_mean(&format!("withheld_{name}_classification_rate_{what}"), &mean, ""), mean)
+        })
     };
     let all = [
         mean_of("joint_prior", joint),
@@ -75,7 +76,7 @@ fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     ];
     let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
     let low = Metric::new(
-        format!("withheld_{name}_rate_joint_minus_independent_low95"),
+        format!("withheld_{name}_classification_rate_joint_minus_independent_low95"),
         mean.mean - mean.half_width,
         "",
     );

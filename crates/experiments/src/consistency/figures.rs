@@ -72,20 +72,20 @@ pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<Consis
 impl ConsistencyMonteCarlo {
     /// The figures of all filters, their names before them.
     ///
-    /// `nees_outside_band_share` is of samples outside the pointwise band, `n_outside_whole_run` of samples outside the one for the whole run.
+    /// `nees_outside_band_share` is of samples outside the pointwise band, `n_samples_nees_outside_whole_run_band` of samples outside the one for the whole run.
     pub fn metrics(&self) -> Vec<Metric> {
         let mut metrics = vec![
             Metric::new("n_runs", f64::from(self.n_runs), ""),
-            Metric::new("heading_sigma_at_closure_rad", self.heading_sigma_at_closure(), "rad"),
+            Metric::new("heading_sigma_before_loop_closure_rad", self.heading_sigma_at_closure(), "rad"),
         ];
         for course in &self.courses {
             let name = |figure: &str| format!("{}_{figure}", course.kind.name());
             metrics.push(Metric::new(name("nees_mean"), course.mean(|look| look.nees), ""));
             metrics.push(Metric::new(name("nees_outside_band_share"), course.share_outside(&self.band), ""));
             let n_outside = course.share_outside(&self.whole_run_band) * course.samples.len() as f64;
-            metrics.push(Metric::new(name("n_outside_whole_run"), n_outside.round(), ""));
+            metrics.push(Metric::new(name("n_samples_nees_outside_whole_run_band"), n_outside.round(), ""));
             let rmse = course.mean(|look| look.position_error.powi(2)).sqrt();
-            metrics.push(Metric::new(name("rmse_m"), rmse, "m"));
+            metrics.push(Metric::new(name("position_rmse_m"), rmse, "m"));
         }
         metrics
     }

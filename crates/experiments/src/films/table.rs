@@ -64,7 +64,7 @@ fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<M
         .map(|MeanInterval { half_width, n, .. }| ConfidenceInterval { half_width, n });
     let mut metrics = vec![
         Metric { spread, ..Metric::new("iou_mean", mean(&ious), "") },
-        Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
+        Metric::new("iou_mean_of_worst_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
         Metric::new("n_frames_lost", sum(|score| score.n_lost), ""),
     ];
     let mut status = LostStatusScore::default();

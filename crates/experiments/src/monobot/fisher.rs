@@ -1,7 +1,7 @@
 use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
     observability::ObservabilityRecorder,
 };
 
@@ -19,13 +19,13 @@ pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
     let ids: Vec<LandmarkId> = (0..n_landmarks).map(LandmarkId).collect();
     let seen: Vec<_> =
         ids.iter().map(|id| Observation { label: Some(*id), measurement: Vector1::new(1.0) }).collect();
-    slam.update(&seen, &mut KnownIds)?;
+    slam.update(&seen, &mut KnownIdAssociation)?;
     let mut recorder = ObservabilityRecorder::new(&slam);
     (0..n_steps)
         .map(|_| {
             slam.predict(&motion, &Vector1::zeros())?;
             recorder.record(&slam, &ids);
-            slam.update(&seen, &mut KnownIds)?;
+            slam.update(&seen, &mut KnownIdAssociation)?;
             Ok(recorder.information()[(0, 0)])
         })
         .collect()

@@ -4,15 +4,15 @@ use super::{
     CompletedRun, MetricBound, PlannedRun, ReferenceFigures, RegressOptions, SuitePlan,
     over_seeds::over_seeds, plan::judge,
 };
-use wayfix_evaluation::report::{MachineInfo, Report, ReportRun, ReportSuite, commit};
+use wayfix_evaluation::report::{FullReport, MachineInfo, ReportRun, ReportSuite, commit};
 
 /// The report of all runs, in the order of the plans: figures over all seeds, with a verdict for each.
 ///
 /// # Errors
 /// Returns an error if a plan or the blessed figures cannot be read or written.
-pub fn assemble(options: &RegressOptions, done: &[CompletedRun]) -> Result<Report> {
+pub fn assemble(options: &RegressOptions, done: &[CompletedRun]) -> Result<FullReport> {
     let suites = options.suites.iter().map(|suite| assemble_suite(options, suite, done));
-    Ok(Report {
+    Ok(FullReport {
         suites: suites.collect::<Result<_>>()?,
         seed: options.seed,
         commit: commit(&options.fixtures),

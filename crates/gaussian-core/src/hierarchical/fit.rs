@@ -3,19 +3,20 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::em::Expectation;
 use crate::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalParams, IterationError, gaussian::check_dimension,
+    Gaussian, GaussianError, GroupStatistics, HierarchicalGaussianParams, IterationError,
+    gaussian::check_dimension,
 };
 
 /// A Gaussian estimated from groups, and the course of the iteration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HierarchicalFit {
+pub struct HierarchicalGaussianFit {
     /// $`N(μ, Σ)`$: the distribution of a new group's $`θ`$.
     pub gaussian: Gaussian<DVector<f64>>,
     /// $`\log p(y, μ, Σ)`$ in nats, at the start and after every iteration; it never falls, but for rounding.
     pub objective: Vec<LogWeight>,
 }
 
-impl HierarchicalFit {
+impl HierarchicalGaussianFit {
     /// How many steps of EM were made.
     pub fn iterations(&self) -> usize {
         self.objective.len() - 1
@@ -30,13 +31,13 @@ impl HierarchicalFit {
 /// Where much is missing there may be several optima; this finds the one above independent coordinates, from where it starts.
 ///
 /// ```
-/// use wayfix_gaussian_core::{GroupStatistics, HierarchicalParams, fit_hierarchical};
+/// use wayfix_gaussian_core::{GroupStatistics, HierarchicalGaussianParams, fit_hierarchical};
 /// let mut groups = vec![GroupStatistics::new(2); 4];
 /// for (group, values) in groups.iter_mut().zip([[1.0, 1.0], [3.0, 2.0], [1.0, 2.0], [3.0, 3.0]]) {
 ///     group.observe(&[0, 1], &values, &[0.0, 0.0])?;
 /// }
 /// // Without noise, gaps and hyperpriors: the sample mean and covariance.
-/// let fit = fit_hierarchical(&groups, &HierarchicalParams::default())?;
+/// let fit = fit_hierarchical(&groups, &HierarchicalGaussianParams::default())?;
 /// assert!((fit.gaussian.mean()[1] - 2.0).abs() < 1e-12 && (fit.gaussian.covariance()[(0, 1)] - 0.5).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -47,8 +48,8 @@ impl HierarchicalFit {
 /// covariance becomes singular on the way; without a hyperprior of $`μ`$ when no group shows some coordinate.
 pub fn fit_hierarchical(
     groups: &[GroupStatistics],
-    params: &HierarchicalParams,
-) -> Result<HierarchicalFit, IterationError<Box<HierarchicalFit>>> {
+    params: &HierarchicalGaussianParams,
+) -> Result<HierarchicalGaussianFit, IterationError<Box<HierarchicalGaussianFit>>> {
     let groups = check(groups, params)?;
     let mut gaussian = start(&groups, params)?;
     let mut objective = Vec::new();
@@ -57,11 +58,11 @@ pub fn fit_hierarchical(
         objective.push(expectation.objective);
         let left = left_to_gain(&objective);
         if left <= params.tolerance {
-            return Ok(HierarchicalFit { gaussian, objective });
+            return Ok(HierarchicalGaussianFit { gaussian, objective });
         }
         let iterations = objective.len() - 1;
         if iterations >= params.max_iterations {
-            let last = Box::new(HierarchicalFit { gaussian, objective });
+            let last = Box::new(HierarchicalGaussianFit { gaussian, objective });
             return Err(IterationError::NotConverged {
                 what: "hierarchical Gaussian",
                 last,
@@ -76,7 +77,7 @@ pub fn fit_hierarchical(
 /// The groups with observations, if they and the hyperpriors together determine a Gaussian.
 fn check<'a>(
     groups: &'a [GroupStatistics],
-    params: &HierarchicalParams,
+    params: &HierarchicalGaussianParams,
 ) -> Result<Vec<&'a GroupStatistics>, GaussianError> {
     let Some(first) = groups.first() else { return Err(GaussianError::Empty { what: "groups" }) };
     let dimension = first.dimension();
@@ -101,7 +102,7 @@ fn check<'a>(
 /// Independent coordinates, each with the moments of its own pooled observations and of the hyperpriors.
 fn start(
     groups: &[&GroupStatistics],
-    params: &HierarchicalParams,
+    params: &HierarchicalGaussianParams,
 ) -> Result<Gaussian<DVector<f64>>, GaussianError> {
     let dimension = groups.first().map_or_else(
         || params.mean_prior.as_ref().map_or(0, |prior| prior.mean.len()),

@@ -2,7 +2,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::RecordData;
 
 use super::ambient_light::AmbientLight;
-use super::params::IndoorParams;
+use super::params::IndoorDriveParams;
 use super::rooms::building::Building;
 use super::rooms::crowd::Crowd;
 use super::view::ViewRenderer;
@@ -33,11 +33,11 @@ pub struct IndoorDriveStep {
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams}, random::RandomStreams};
+/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorDriveParams, RetailStore, RetailStoreParams}, random::RandomStreams};
 /// let mut rng = ChaCha8Rng::seed_from_u64(1);
 /// let building = RetailStore::draw(RetailStoreParams::area(), &mut rng)?.building();
 /// let route = building.aisles().tour(30.0, &mut rng)?;
-/// let drive = IndoorDrive::new(&building, route, IndoorParams::default(), RandomStreams::new(rng))?;
+/// let drive = IndoorDrive::new(&building, route, IndoorDriveParams::default(), RandomStreams::new(rng))?;
 /// let steps: Vec<_> = drive.collect();
 /// let odometry: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.translation.norm()).sum();
 /// assert!(odometry > 25.0 && steps[0].view.rgb.len() == 3 * 120 * 20);
@@ -46,7 +46,7 @@ pub struct IndoorDriveStep {
 pub struct IndoorDrive<'a> {
     building: &'a Building,
     route: Route,
-    params: IndoorParams,
+    params: IndoorDriveParams,
     streams: RandomStreams,
     robot: DifferentialDrive,
     driver: PurePursuit,
@@ -66,7 +66,7 @@ impl<'a> IndoorDrive<'a> {
     pub fn new(
         building: &'a Building,
         route: Route,
-        params: IndoorParams,
+        params: IndoorDriveParams,
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate()?;

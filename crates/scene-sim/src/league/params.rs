@@ -5,7 +5,7 @@ use crate::{SimulationError, check};
 
 /// One drive over the field with the camera running.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LeagueParams {
+pub struct LeagueDriveParams {
     /// Number of frames, at most 100 000. Default 280.
     pub n_frames: usize,
     /// Time from one to the next, milliseconds; longer than the exposure. Default 100.
@@ -23,10 +23,10 @@ pub struct LeagueParams {
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
     pub with_unmapped_objects: bool,
     /// Number of labelled frames in the log. Default 12.
-    pub n_labelled: usize,
+    pub n_labelled_frames: usize,
 }
 
-impl Default for LeagueParams {
+impl Default for LeagueDriveParams {
     fn default() -> Self {
         Self {
             n_frames: 280,
@@ -37,12 +37,12 @@ impl Default for LeagueParams {
             kidnap_frames: Vec::new(),
             robot: LeggedRobotParams::default(),
             with_unmapped_objects: true,
-            n_labelled: 12,
+            n_labelled_frames: 12,
         }
     }
 }
 
-impl LeagueParams {
+impl LeagueDriveParams {
     /// Validates the parameters for this camera; those of the robot are validated when it is created.
     pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimulationError> {
         check::count("frames", self.n_frames, 100_000)?;

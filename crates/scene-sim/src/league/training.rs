@@ -2,7 +2,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::{LampSetting, LeagueDrive, LeagueParams, LeaguePicture, LeagueVenue, LinearRgb, N_COLORS, yuv};
+use super::{
+    LampSetting, LeagueDrive, LeagueDriveParams, LeaguePicture, LeagueVenue, LinearRgb, N_COLORS, yuv,
+};
 use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, check};
 
@@ -32,32 +34,32 @@ pub struct ColorMeans {
 
 /// Parameters of the training venues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TrainingParams {
+pub struct TrainingVenuesParams {
     /// Number of halls, each seen under both lights. Default 22, which makes 44 sets of pictures.
     pub n_halls: usize,
     /// Pictures of each under each light. Default 8.
-    pub n_images: usize,
+    pub n_images_per_light: usize,
     /// Fewest pixels of a colour that make a mean. Default 30.
     pub min_pixels: usize,
 }
 
-impl Default for TrainingParams {
+impl Default for TrainingVenuesParams {
     fn default() -> Self {
-        Self { n_halls: 22, n_images: 8, min_pixels: 30 }
+        Self { n_halls: 22, n_images_per_light: 8, min_pixels: 30 }
     }
 }
 
 /// Time between images, ms, long enough to change the view.
 const PERIOD_MS: u32 = 2500;
 
-impl TrainingParams {
+impl TrainingVenuesParams {
     /// Draws halls, simulates walks through them and takes images: first the dark sets, then the bright ones.
     ///
     /// A logged venue must not be one of these: draw it from another seed.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    /// use wayfix_scene_sim::league::TrainingParams;
-    /// let params = TrainingParams { n_halls: 2, n_images: 3, ..TrainingParams::default() };
+    /// use wayfix_scene_sim::league::TrainingVenuesParams;
+    /// let params = TrainingVenuesParams { n_halls: 2, n_images_per_light: 3, ..TrainingVenuesParams::default() };
     /// let sets = params.gather(ChaCha8Rng::seed_from_u64(1))?;
     /// assert_eq!(sets.len(), 4);
     /// assert!(sets.iter().flat_map(|set| &set.images).any(|image| image.means[0].is_some()), "some carpet");
@@ -68,7 +70,7 @@ impl TrainingParams {
     /// Returns an error if there is to be too much of anything.
     pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<TrainingVenue>, SimulationError> {
         check::count("halls", self.n_halls, 10_000)?;
-        check::count("pictures", self.n_images, 10_000)?;
+        check::count("pictures", self.n_images_per_light, 10_000)?;
         let mut sets = Vec::new();
         let seeds: Vec<[u64; 2]> = (0..self.n_halls).map(|_| [rng.next_u64(), rng.next_u64()]).collect();
         for lighting in [LampSetting::Dark, LampSetting::Bright] {
@@ -89,11 +91,11 @@ impl TrainingParams {
     ) -> Result<TrainingVenue, SimulationError> {
         let streams = |seed| RandomStreams::new(ChaCha8Rng::seed_from_u64(seed));
         let venue = LeagueVenue::draw(streams(venue_seed).of(RandomStreamPurpose::Venue))?;
-        let params = LeagueParams {
-            n_frames: self.n_images,
+        let params = LeagueDriveParams {
+            n_frames: self.n_images_per_light,
             period_ms: PERIOD_MS,
             lamp_settings: vec![(0, lighting)],
-            ..LeagueParams::default()
+            ..LeagueDriveParams::default()
         };
         let mut pooled = Pooled::default();
         let mut images = Vec::new();

@@ -1,7 +1,7 @@
 use wayfix_sensor_log::Record;
 
 use super::{OdometryParams, Scenario, ScenarioParams};
-use crate::drive::{SlipParams, WheeledRobotParams};
+use crate::drive::{WheelSlipParams, WheeledRobotParams};
 use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::route::{RoundedRectangleRoute, RouteParams};
 use crate::sensor::laser::People;
@@ -72,7 +72,7 @@ pub(super) fn office_laser() -> Scenario {
             left_radius_error: 0.0008,
             right_radius_error: -0.0005,
             wheel_separation_error: 0.01,
-            slip: SlipParams { slip_sigma: 0.03, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+            slip: WheelSlipParams { slip_sigma: 0.03, correlation_time_s: 1.0, wheel_correlation: 0.5 },
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {

@@ -5,10 +5,10 @@ use wayfix_sensor_log::{Record, Stamp};
 use super::league;
 #[cfg(feature = "indoors")]
 use super::store::{self, RetailStoreLapsParams};
-use super::{LaserDriveParams, PlanarParams, catalogue};
+use super::{LaserDriveParams, PlanarDriveParams, catalogue};
 use crate::SimulationError;
 #[cfg(feature = "league")]
-use crate::league::LeagueParams;
+use crate::league::LeagueDriveParams;
 use crate::monobot::MonobotParams;
 use crate::random::RandomStreams;
 
@@ -36,14 +36,14 @@ pub struct Scenario {
 #[non_exhaustive]
 pub enum ScenarioParams {
     /// A robot in the plane.
-    Planar(Box<PlanarParams>),
+    Planar(Box<PlanarDriveParams>),
     /// A robot in the plane with a laser.
     Laser(Box<LaserDriveParams>),
     /// A robot on a line, one step every 100 ms.
     Monobot(MonobotParams),
     /// A robot with a camera on the field of the four-legged league.
     #[cfg(feature = "league")]
-    League(Box<LeagueParams>),
+    League(Box<LeagueDriveParams>),
     /// A robot with an omnidirectional camera in a store.
     #[cfg(feature = "indoors")]
     StoreLaps(Box<RetailStoreLapsParams>),

@@ -13,7 +13,7 @@ use crate::{Simulation, SimulationError, check};
 
 /// Everything about one drive in the plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlanarParams {
+pub struct PlanarDriveParams {
     /// Landmarks and walls.
     pub layout: WorldLayout,
     /// Number of objects with unlisted codes 1000, 1001, …, placed randomly among the landmarks; at most 1000.
@@ -54,7 +54,7 @@ pub enum OdometryParams {
     Wheels(WheelOdometryParams),
 }
 
-impl PlanarParams {
+impl PlanarDriveParams {
     /// The log, in time order.
     ///
     /// # Errors

@@ -43,7 +43,7 @@ fn gamma_crosstalk_and_stray_light_are_as_asked_for() {
     for (got, wanted) in mixed.rgb.iter().zip([204.0, 25.5, 25.5]) {
         assert!((f64::from(*got) - wanted).abs() <= ROUNDING, "{got}, wanted {wanted}");
     }
-    let hazy = of_blank(CameraParams { flare: 0.1, ..honest() }, LinearRgb::repeat(0.5));
+    let hazy = of_blank(CameraParams { stray_light_share: 0.1, ..honest() }, LinearRgb::repeat(0.5));
     assert!((f64::from(hazy.rgb[0]) - 255.0 * 0.55).abs() <= ROUNDING, "{}", hazy.rgb[0]);
 }
 
@@ -55,7 +55,7 @@ fn u(rgb: &[u8]) -> f64 {
 
 #[test]
 fn shared_chroma_is_the_same_for_all_that_share_it() {
-    let noisy = |chroma| CameraParams { chroma_subsampling: chroma, read_noise: 0.05, ..honest() };
+    let noisy = |chroma| CameraParams { chroma_subsampling: chroma, read_noise_sigma: 0.05, ..honest() };
     let furthest = |chroma, offset: usize| -> f64 {
         let picture = of_blank(noisy(chroma), LinearRgb::repeat(0.5));
         let pixels: Vec<&[u8]> = picture.rgb.chunks_exact(3).collect();

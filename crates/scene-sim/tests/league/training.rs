@@ -1,12 +1,12 @@
 //! Training venues: two groups of light, colours that keep their order, colours that are missing.
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_scene_sim::league::{LampSetting, N_COLORS, TrainingParams, TrainingVenue};
+use wayfix_scene_sim::league::{LampSetting, N_COLORS, TrainingVenue, TrainingVenuesParams};
 
 use crate::support::mean;
 
 fn sets() -> Vec<TrainingVenue> {
-    TrainingParams::default().gather(ChaCha8Rng::seed_from_u64(44)).expect("sound parameters")
+    TrainingVenuesParams::default().gather(ChaCha8Rng::seed_from_u64(44)).expect("sound parameters")
 }
 
 /// Mean of one channel of one colour over the pictures that show it.

@@ -1,7 +1,7 @@
-use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::encode};
-use crate::{ImageFormat, LogError, Record, RecordData};
+use super::{FoxgloveMessageSink, FoxgloveMessageWriter, camera, scan, topics, vehicle, writing::encode};
+use crate::{ImageFileFormat, LogError, Record, RecordData};
 
-impl<S: MessageSink> MessageWriter<S> {
+impl<S: FoxgloveMessageSink> FoxgloveMessageWriter<S> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading restores it to the bit (negative zeros lose their sign).
     /// # Errors
     /// Returns an error if a number is not finite, a camera has no pixels or no focal length, an image does not have its stated format, true
@@ -58,7 +58,7 @@ impl<S: MessageSink> MessageWriter<S> {
                 self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
                 self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
             }
-            RecordData::Image(image) if image.format == ImageFormat::Pnm => {
+            RecordData::Image(image) if image.format == ImageFileFormat::Pnm => {
                 self.message(topics::IMAGE, stamp, &camera::encode_raw_image(timestamp, image))
             }
             RecordData::Image(image) => {

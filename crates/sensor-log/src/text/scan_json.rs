@@ -18,14 +18,19 @@ use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
 use crate::{
-    LaserScan, LogEnd, LogError, LogFormat, PoseKind, ReadReport, Record, RecordData, RowProblemKind, Stamp,
+    LaserScan, LogCompleteness, LogError, LogFormat, LogReadReport, PoseKind, Record, RecordData,
+    RowProblemKind, Stamp,
 };
 
 /// Maximum size of a file, in bytes; it bounds the memory used.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// All records, sorted by time.
-pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(
+    path: &Path,
+    poses: PoseKind,
+    report: &mut LogReadReport,
+) -> Result<Vec<Record>, LogError> {
     let mut text = read_text(path, report)?;
     replace_non_finite(&mut text);
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -51,7 +56,7 @@ pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Res
 }
 
 /// The readable part of the text of a file that may be compressed.
-fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> {
+fn read_text(path: &Path, report: &mut LogReadReport) -> Result<Vec<u8>, LogError> {
     let mut text = Vec::new();
     if let Err(error) = open_text(path)?.take(MAX_BYTES + 1).read_to_end(&mut text) {
         let end = end_of_damaged(path, &error, text.len() as u64);
@@ -96,19 +101,19 @@ fn replace_non_finite(text: &mut [u8]) {
 }
 
 /// Every entry that is whole, in the order of the file.
-fn entries(text: &[u8], report: &mut ReadReport) -> Vec<(String, Value)> {
+fn entries(text: &[u8], report: &mut LogReadReport) -> Vec<(String, Value)> {
     let mut entries = Vec::new();
     let mut json = Deserializer::from_slice(text);
     let read = Document(&mut entries).deserialize(&mut json).and_then(|()| json.end());
     match read {
         // A truncated file is already reported.
-        Err(error) if report.end == LogEnd::Complete => {
+        Err(error) if report.end == LogCompleteness::Complete => {
             let line_start = text.split_inclusive(|byte| *byte == b'\n').take(error.line().saturating_sub(1));
             let byte = line_start.map(<[u8]>::len).sum::<usize>() + error.column();
             report.end = if error.is_eof() {
-                LogEnd::Truncated { file_bytes: text.len() as u64, missing_bytes: 1 }
+                LogCompleteness::Truncated { file_bytes: text.len() as u64, missing_bytes: 1 }
             } else {
-                LogEnd::Damaged { byte: byte as u64, reason: error.to_string() }
+                LogCompleteness::Damaged { byte: byte as u64, reason: error.to_string() }
             };
         }
         _ => {}

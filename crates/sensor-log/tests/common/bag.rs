@@ -8,7 +8,7 @@ use std::io::Cursor;
 
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
-use wayfix_sensor_log::{LogError, OpenOptions, ReadReport, Record, open};
+use wayfix_sensor_log::{LogError, LogOpenOptions, LogReadReport, Record, open};
 
 use super::cdr::Encoder;
 
@@ -51,17 +51,17 @@ impl Bag {
         self.writer.into_inner().into_inner()
     }
 
-    pub(crate) fn read(self) -> (Vec<Record>, ReadReport) {
+    pub(crate) fn read(self) -> (Vec<Record>, LogReadReport) {
         read(&self.finish(), &[]).unwrap()
     }
 }
 
-pub(crate) fn read(bytes: &[u8], topics: &[&str]) -> Result<(Vec<Record>, ReadReport), LogError> {
+pub(crate) fn read(bytes: &[u8], topics: &[&str]) -> Result<(Vec<Record>, LogReadReport), LogError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bag.mcap");
     fs::write(&path, bytes).unwrap();
     let topics = topics.iter().map(|&topic| topic.to_owned()).collect();
-    open(&path, &OpenOptions { topics, ..Default::default() }).map(|log| log.read_all())
+    open(&path, &LogOpenOptions { topics, ..Default::default() }).map(|log| log.read_all())
 }
 
 /// A message that begins with a header of so many seconds.

@@ -11,7 +11,7 @@ mod new_ids;
 use nalgebra::DefaultAllocator;
 
 pub use joint_compatibility::{JointCompatibility, JointCompatibilityParams};
-pub use known_ids::KnownIds;
+pub use known_ids::KnownIdAssociation;
 pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};
 
 use new_ids::NewIds;

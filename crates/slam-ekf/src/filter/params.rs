@@ -69,9 +69,9 @@ pub enum UpdateOrder {
 /// let robot = |covariance_update| {
 ///     let params = SlamParams { covariance_update, ..SlamParams::default() };
 ///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIds)?;
+///     slam.update(&look, &mut KnownIdAssociation)?;
 ///     slam.predict(&OdometryMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIds)?;
+///     slam.update(&look, &mut KnownIdAssociation)?;
 ///     Ok::<_, SlamError>(slam.robot().x())
 /// };
 /// assert!((robot(CovarianceUpdate::Full)? - robot(CovarianceUpdate::Compressed)?).abs() < 1e-12);
@@ -122,10 +122,14 @@ impl SlamParams {
             let range = "positive";
             return Err(SlamError::Parameter { name: "student_t_degrees_of_freedom", value: degrees, range });
         }
-        let restart_nis = self.confirmation.restart_nis;
-        if restart_nis.is_nan() || restart_nis <= 0.0 {
+        let tentative_restart_nis = self.confirmation.tentative_restart_nis;
+        if tentative_restart_nis.is_nan() || tentative_restart_nis <= 0.0 {
             let range = "positive";
-            return Err(SlamError::Parameter { name: "restart_nis", value: restart_nis, range });
+            return Err(SlamError::Parameter {
+                name: "tentative_restart_nis",
+                value: tentative_restart_nis,
+                range,
+            });
         }
         let share = self.confirmation.min_detection_rate;
         if !(0.0..=1.0).contains(&share) {

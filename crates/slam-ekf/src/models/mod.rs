@@ -16,7 +16,7 @@ mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use correlated_noise::CorrelatedNoise;
-pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor};
+pub use drifting::{MotionWithHeadingDrift, PoseWithHeadingDrift, SensorWithHeadingDrift};
 pub use increment::OdometryMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::MountedSensor;

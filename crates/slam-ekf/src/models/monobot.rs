@@ -17,10 +17,10 @@ pub struct MonobotMotion {
 ///
 /// ```
 /// use nalgebra::Vector1;
-/// use wayfix_slam_ekf::{EkfSlam, KnownIds, LandmarkId, MonobotSensor, Observation, SlamParams};
+/// use wayfix_slam_ekf::{EkfSlam, KnownIdAssociation, LandmarkId, MonobotSensor, Observation, SlamParams};
 /// let sensor = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.0 };
 /// let mut slam = EkfSlam::new(sensor, SlamParams::default(), Vector1::new(-1.0))?;
-/// slam.update(&[Observation { label: Some(LandmarkId(0)), measurement: Vector1::new(2.1) }], &mut KnownIds)?;
+/// slam.update(&[Observation { label: Some(LandmarkId(0)), measurement: Vector1::new(2.1) }], &mut KnownIdAssociation)?;
 /// assert!((slam.landmark(LandmarkId(0)).expect("seen").mean.x - 1.1).abs() < 1e-12);
 /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
 /// ```

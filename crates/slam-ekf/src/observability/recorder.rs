@@ -26,13 +26,13 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 /// let mut recorder = ObservabilityRecorder::new(&slam);
 /// let seen = |id, distance| Observation { label: Some(LandmarkId(id)), measurement: Vector1::new(distance) };
 ///
-/// slam.update(&[seen(0, 2.0)], &mut KnownIds)?;
+/// slam.update(&[seen(0, 2.0)], &mut KnownIdAssociation)?;
 /// recorder.record(&slam, &[LandmarkId(0)]);
 /// assert_eq!((recorder.dimension(), recorder.rank()), (2, 1));
 /// assert_eq!(recorder.unobservable_directions()[0].to_string(), "translation of everything");
 ///
 /// slam.add_anchor(LandmarkId(1), Vector1::new(0.0))?; // a landmark whose place is known
-/// slam.update(&[seen(1, 1.0)], &mut KnownIds)?;
+/// slam.update(&[seen(1, 1.0)], &mut KnownIdAssociation)?;
 /// recorder.record(&slam, &[LandmarkId(1)]);
 /// assert_eq!(recorder.rank(), 2);
 /// assert!(recorder.unobservable_directions().is_empty());

@@ -5,11 +5,11 @@ use super::CmlSystem;
 use crate::system::{self, EstimateRecorder, EstimateWriter, write_pose};
 
 /// Writes the views, the path and the references of an appearance map beside the records, for viewers.
-pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawing>;
+pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawingState>;
 
 /// State of the drawing of [`CmlEstimateRecorder`].
 #[derive(Default)]
-pub struct CmlDrawing {
+pub struct CmlDrawingState {
     n_written: usize,
     path: Vec<Pose2<f64>>,
 }
@@ -17,7 +17,7 @@ pub struct CmlDrawing {
 /// Number of views between two writes of the whole path and the references.
 const PERIOD: usize = 20;
 
-impl system::EstimateDrawing for CmlDrawing {
+impl system::EstimateDrawer for CmlDrawingState {
     type System = CmlSystem;
 
     fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {

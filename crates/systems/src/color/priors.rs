@@ -10,7 +10,7 @@ use wayfix_color_model::{
     PriorLearningParams, TrainingVenue, learn_priors,
 };
 use wayfix_kalman::MarkovChain;
-use wayfix_scene_sim::league::{COLOR_NAMES, TrainingParams};
+use wayfix_scene_sim::league::{COLOR_NAMES, TrainingVenuesParams};
 use wayfix_sensor_log::read_text;
 
 use super::ColorSystemParams;
@@ -42,7 +42,7 @@ pub fn read(path: &Path) -> Result<LightingPriors> {
 /// # Errors
 /// Returns an error if learning fails.
 pub fn learn_from_simulation(k: usize) -> Result<LightingPriors> {
-    let venues: Vec<TrainingVenue> = TrainingParams::default()
+    let venues: Vec<TrainingVenue> = TrainingVenuesParams::default()
         .gather(ChaCha8Rng::seed_from_u64(TRAINING_SEED))?
         .into_iter()
         .map(training_venue)

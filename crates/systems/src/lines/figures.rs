@@ -1,11 +1,11 @@
 use wayfix_line_extract::WallSegment;
 
-use super::{LineSystem, WallScore};
+use super::{LineExtractionSystem, WallScore};
 use crate::system::System;
 use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(system: &mut LineSystem) -> ReportRun {
+pub fn summarize(system: &mut LineExtractionSystem) -> ReportRun {
     let n_used = system.scans().len() as f64;
     let segments = || system.scans().iter().flat_map(|scan| &scan.segments);
     let mut metrics = vec![
@@ -30,7 +30,7 @@ fn beside_truth(score: WallScore) -> Vec<Metric> {
     let WallScore { n_true, n_false, n_within_2_sigma, squared_sum, n_visible, n_missed } = score;
     let share = |n: usize, of: usize| if of > 0 { n as f64 / of as f64 } else { f64::NAN };
     vec![
-        Metric::new("within_2_sigma_share", share(n_within_2_sigma, n_true), ""),
+        Metric::new("extracted_walls_within_2_sigma_share", share(n_within_2_sigma, n_true), ""),
         Metric::new("nees_mean", squared_sum / n_true as f64, ""),
         Metric::new("false_wall_share", share(n_false, n_true + n_false), ""),
         Metric::new("found_wall_share", share(n_visible - n_missed, n_visible), ""),

@@ -1,6 +1,6 @@
 use nalgebra::Vector2;
 
-use super::{LineSystem, ScanWalls};
+use super::{LineExtractionSystem, ScanWalls};
 use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 
 /// Number of scans drawn, spread evenly over the log.
@@ -10,7 +10,7 @@ const N_SCANS: usize = 3;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn plots(system: &LineSystem) -> Result<Vec<SvgPlot>, PlotError> {
+pub fn plots(system: &LineExtractionSystem) -> Result<Vec<SvgPlot>, PlotError> {
     let scans = system.scans();
     let mut plots = Vec::new();
     if scans.iter().any(|scan| scan.pose.is_some()) {
@@ -23,7 +23,7 @@ pub fn plots(system: &LineSystem) -> Result<Vec<SvgPlot>, PlotError> {
     Ok(plots)
 }
 
-fn map(system: &LineSystem) -> MapPlot {
+fn map(system: &LineExtractionSystem) -> MapPlot {
     let placed = || system.scans().iter().filter_map(|scan| Some((scan.pose?, scan)));
     let path = placed().map(|(pose, _)| (pose.x(), pose.y())).collect();
     let walls = placed().flat_map(|(pose, scan)| {

@@ -7,7 +7,7 @@ use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 use crate::system::{EventCounts, Stopwatch, System, largest_echo};
 
 /// Extracts the walls of every scan of a log.
-pub struct LineSystem {
+pub struct LineExtractionSystem {
     extractor: LineExtractor,
     pose: Option<(Stamp, Pose2<f64>)>,
     mount: Pose2<f64>,
@@ -32,7 +32,7 @@ pub struct ScanWalls {
     pub step: Duration,
 }
 
-impl LineSystem {
+impl LineExtractionSystem {
     /// Creates a system with these extraction parameters.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl LineSystem {
     }
 }
 
-impl System for LineSystem {
+impl System for LineExtractionSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
             RecordData::TruePose(pose) => self.pose = Some((record.stamp, *pose)),

@@ -9,11 +9,11 @@ use wayfix_slam_ekf::{
 };
 
 use super::{
-    MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing,
-    sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
+    MountingParams, OdometryRecordKind, PointSlamParams, commands::Commands, drawing,
+    sequential_motion::SequentialMotion, state::PointFrontEndState, unknown_motion::UnknownMotion,
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, ChosenRule, SlamEstimator, SlamFrontEnd, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -21,17 +21,17 @@ use crate::{
 pub type PointSensor = RangeBearingSensorWithScale<MountedSensor<RangeBearingSensor>>;
 
 /// EKF-SLAM with points.
-pub type PointSystem = SlamSystem<PointFrontEnd>;
+pub type PointSystem = SlamSystem<PointSlamFrontEnd>;
 
 /// Detections of points with odometry that may come late.
-pub struct PointFrontEnd {
+pub struct PointSlamFrontEnd {
     pub(super) params: PointSlamParams,
     pub(super) commands: Commands,
     /// How the robot has moved by its commands.
     pub(super) motion: MotionStatistics,
     plausible: IncrementPlausibilityCheck,
     /// The kind of odometry that came first.
-    pub(super) odometry: Option<OdometryEncoding>,
+    pub(super) odometry: Option<OdometryRecordKind>,
     /// The time of the filter's state.
     pub(super) time: Stamp,
 }
@@ -54,7 +54,7 @@ impl PointSystem {
         let (confirmation, merging) = match rule {
             AssociationRule::Known => (params.filter.confirmation, None),
             AssociationRule::Nn | AssociationRule::Jcbb => {
-                (params.unlabelled_confirmation, params.filter.merging)
+                (params.unlabelled_landmark_confirmation, params.filter.merging)
             }
         };
         let filter_params = SlamParams { confirmation, merging, ..params.filter };
@@ -66,7 +66,7 @@ impl PointSystem {
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        let front_end = PointFrontEnd {
+        let front_end = PointSlamFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
             plausible: IncrementPlausibilityCheck::default(),
@@ -86,15 +86,15 @@ impl PointSystem {
 
 type Points = SlamEstimator<PointSensor>;
 
-impl FrontEnd for PointFrontEnd {
+impl SlamFrontEnd for PointSlamFrontEnd {
     type Model = PointSensor;
-    type State = PointState;
+    type State = PointFrontEndState;
 
     fn take(&mut self, record: &Record, estimator: &mut Points) -> Result<(), String> {
         let stamp = record.stamp;
         match &record.data {
-            odometry if OdometryEncoding::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
-                estimator.events.count("second_odometry_source");
+            odometry if OdometryRecordKind::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
+                estimator.events.count("second_odometry_source_ignored");
                 Ok(())
             }
             RecordData::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
@@ -113,12 +113,12 @@ impl FrontEnd for PointFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn state(&self) -> PointState {
-        PointState::of(self)
+    fn state(&self) -> PointFrontEndState {
+        PointFrontEndState::of(self)
     }
 }
 
-impl PointFrontEnd {
+impl PointSlamFrontEnd {
     fn take_velocity(
         &mut self,
         stamp: Stamp,
@@ -185,7 +185,7 @@ impl PointFrontEnd {
     }
 
     /// Whether this kind of odometry moves the robot: the kind that comes first does. A log may record one motion in two kinds.
-    fn moves_by(&mut self, odometry: OdometryEncoding) -> bool {
+    fn moves_by(&mut self, odometry: OdometryRecordKind) -> bool {
         *self.odometry.get_or_insert(odometry) == odometry
     }
 

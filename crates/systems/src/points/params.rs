@@ -1,7 +1,7 @@
 use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_sensor_log::{LogFormat, LogMeta};
+use wayfix_sensor_log::{LogFormat, LogMetadata};
 use wayfix_slam_ekf::{
     AckermannVehicle, CorrelatedNoise, JointCompatibilityParams, LandmarkConfirmationParams,
     LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule, RangeBearingSensor,
@@ -52,7 +52,7 @@ pub struct PointSlamParams {
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
-    pub unlabelled_confirmation: LandmarkConfirmationParams,
+    pub unlabelled_landmark_confirmation: LandmarkConfirmationParams,
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
@@ -121,7 +121,7 @@ pub enum RobotProfile {
 
 impl RobotProfile {
     /// The robot that recorded a log, as far as the format tells that it was first stored in.
-    pub fn of_log(meta: &LogMeta) -> Self {
+    pub fn of_log(meta: &LogMetadata) -> Self {
         match meta.first_format() {
             LogFormat::Utias => Self::Utias,
             LogFormat::RangeBearing => Self::RangeBearing,
@@ -149,9 +149,9 @@ impl PointSlamParams {
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
-                unlabelled_confirmation: LandmarkConfirmationParams {
+                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
                     min_detections: 3,
-                    max_missed: Some(20),
+                    max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
                 record_observability: false,
@@ -200,9 +200,9 @@ impl PointSlamParams {
                     new_landmark_nis: 60.0,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: LandmarkConfirmationParams {
+                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
-                    max_missed: Some(5),
+                    max_consecutive_misses: Some(5),
                     min_detection_rate: 0.4,
                     ..LandmarkConfirmationParams::default()
                 },
@@ -249,9 +249,9 @@ impl PointSlamParams {
                     one_detection_per_landmark: true,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: LandmarkConfirmationParams {
+                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
-                    max_missed: Some(20),
+                    max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
                 ..Self::of(RobotProfile::Generic)
@@ -290,7 +290,7 @@ mod tests {
         let mut expected = PointSlamParams::of(RobotProfile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
-        expected.filter.confirmation.max_missed = Some(7);
+        expected.filter.confirmation.max_consecutive_misses = Some(7);
         assert_eq!(params, expected);
     }
 

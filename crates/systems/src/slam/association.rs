@@ -3,7 +3,7 @@ use nalgebra::DefaultAllocator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_slam_ekf::{
-    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
+    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIdAssociation,
     LandmarkDim, LandmarkModel, MeasurementDim, NearestNeighbour, NearestNeighbourParams, Observation,
     RobotDim, SlamAlloc, SlamError,
 };
@@ -22,7 +22,7 @@ pub enum AssociationRule {
 
 /// The rule of association that a run chose.
 pub(crate) enum ChosenRule {
-    Known(KnownIds),
+    Known(KnownIdAssociation),
     NearestNeighbour(NearestNeighbour),
     JointCompatibility(JointCompatibility),
 }
@@ -36,7 +36,7 @@ impl ChosenRule {
         joint_compatibility: JointCompatibilityParams,
     ) -> Result<Self, SlamError> {
         Ok(match rule {
-            AssociationRule::Known => Self::Known(KnownIds),
+            AssociationRule::Known => Self::Known(KnownIdAssociation),
             AssociationRule::Nn => Self::NearestNeighbour(NearestNeighbour::new(nearest_neighbour)?),
             AssociationRule::Jcbb => Self::JointCompatibility(JointCompatibility::new(joint_compatibility)?),
         })

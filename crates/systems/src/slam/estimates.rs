@@ -5,20 +5,20 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{FrontEnd, SlamSystem};
+use super::{SlamFrontEnd, SlamSystem};
 use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Path and map beside the records, for viewers.
-pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawing<F>>;
+pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawingState<F>>;
 
 /// What [`SlamEstimateRecorder`] has drawn so far.
-pub struct SlamDrawing<F> {
+pub struct SlamDrawingState<F> {
     n_written: usize,
     path: Vec<Pose2<f64>>,
     front_end: PhantomData<fn() -> F>,
 }
 
-impl<F> Default for SlamDrawing<F> {
+impl<F> Default for SlamDrawingState<F> {
     fn default() -> Self {
         Self { n_written: 0, path: Vec::new(), front_end: PhantomData }
     }
@@ -27,7 +27,7 @@ impl<F> Default for SlamDrawing<F> {
 /// The map and the whole path are written with every so many estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 
-impl<F: FrontEnd> system::EstimateDrawing for SlamDrawing<F>
+impl<F: SlamFrontEnd> system::EstimateDrawer for SlamDrawingState<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {

@@ -1,6 +1,6 @@
 //! EKF-SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 //!
-//! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
+//! [`SlamSystem`] is generic over a [`SlamFrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
 //! Filter, association, observability, saved maps, figures and pictures are the same for both.
 
 mod association;
@@ -18,17 +18,17 @@ mod system;
 
 pub use association::AssociationRule;
 pub(crate) use association::ChosenRule;
-pub use estimates::{SlamDrawing, SlamEstimateRecorder};
+pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 use event_name::event_name;
 pub(crate) use figures::summary;
-pub use front_end::{FrontEnd, FrontEndState};
+pub use front_end::{SlamFrontEnd, SlamFrontEndState};
 pub(crate) use increment_numbers::increment_numbers;
 pub(crate) use plots::plots_with;
 pub use run::SlamRun;
 pub(crate) use saved::check_association;
-pub use saved::{PeriodicSaver, SavedMapError, SlamState};
+pub use saved::{PeriodicStateSaver, SavedMapError, SlamState};
 pub(crate) use start::{
     start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
 };

@@ -6,28 +6,29 @@ use wayfix_line_extract::LineExtractor;
 use wayfix_scan_match::ScanMatcher;
 use wayfix_sensor_log::{LaserScan, LogError, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    DriftingPose, DriftingPoseSensor, EkfSlam, MountedSensor, Observation, WallMeasurement, WallSensor,
+    EkfSlam, MountedSensor, Observation, PoseWithHeadingDrift, SensorWithHeadingDrift, WallMeasurement,
+    WallSensor,
 };
 
 use super::{
-    KeyframeThreshold, WallSlamParams, WallState, drawing,
+    KeyframeThreshold, WallFrontEndState, WallSlamParams, drawing,
     odometry::{Motion, OdometryBetweenScans},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, ChosenRule, SlamEstimator, SlamFrontEnd, SlamSystem, nis},
     system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
-pub type WallModel = DriftingPoseSensor<MountedSensor<WallSensor>>;
+pub type WallModel = SensorWithHeadingDrift<MountedSensor<WallSensor>>;
 
 /// EKF-SLAM with walls.
-pub type WallSystem = SlamSystem<WallFrontEnd>;
+pub type WallSystem = SlamSystem<WallSlamFrontEnd>;
 
 /// Laser scans, matched to keyframes of which walls are extracted.
-pub struct WallFrontEnd {
+pub struct WallSlamFrontEnd {
     pub(super) params: WallSlamParams,
     pub(super) moves_by_velocity: bool,
     extractor: LineExtractor,
@@ -69,15 +70,18 @@ impl WallSystem {
             rule => rule,
         };
         let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
-        let sensor = DriftingPoseSensor(MountedSensor { sensor: params.sensor, mount: params.mount() });
-        let state = DriftingPose { pose: start, heading_drift: 0.0 };
+        let sensor = SensorWithHeadingDrift(MountedSensor { sensor: params.sensor, mount: params.mount() });
+        let state = PoseWithHeadingDrift { pose: start, heading_drift: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.heading_drift_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
         let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        let front_end = WallFrontEnd {
+        let front_end = WallSlamFrontEnd {
             extractor: LineExtractor::new(params.line_extraction)?,
-            matcher: params.match_scans.then(|| ScanMatcher::new(params.scan_match)).transpose()?,
+            matcher: params
+                .match_scans_to_keyframe
+                .then(|| ScanMatcher::new(params.scan_match))
+                .transpose()?,
             last_keyframe: None,
             relative_motion: RelativeMotion::default(),
             params,
@@ -102,9 +106,9 @@ impl WallSystem {
 /// The estimator of this front end.
 pub(super) type Walls = SlamEstimator<WallModel>;
 
-impl FrontEnd for WallFrontEnd {
+impl SlamFrontEnd for WallSlamFrontEnd {
     type Model = WallModel;
-    type State = WallState;
+    type State = WallFrontEndState;
 
     fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
         match &record.data {
@@ -154,12 +158,12 @@ impl FrontEnd for WallFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn state(&self) -> WallState {
-        WallState::of(self)
+    fn state(&self) -> WallFrontEndState {
+        WallFrontEndState::of(self)
     }
 }
 
-impl WallFrontEnd {
+impl WallSlamFrontEnd {
     /// Where the laser is on the robot.
     fn mount(&self) -> Pose2<f64> {
         self.params.mount()

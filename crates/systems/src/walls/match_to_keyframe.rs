@@ -2,14 +2,14 @@ use nalgebra::{DMatrix, Vector1};
 use wayfix_scan_match::{InitialGuess, ScanPointCloud};
 
 use super::{
-    front_end::{WallFrontEnd, Walls},
+    front_end::{WallSlamFrontEnd, Walls},
     relative_motion::DriftMeasurement,
 };
 
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
 
-impl WallFrontEnd {
+impl WallSlamFrontEnd {
     /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the heading of
     /// the match alone, relative to the keyframe.
     pub(super) fn match_to_keyframe(&mut self, cloud: &ScanPointCloud, estimator: &mut Walls) -> Option<f64> {

@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::{AffineColorMap, ColorState, PrincipalColors};
+use super::{AffineColorMap, ColorDistributionState, PrincipalColors};
 use crate::TrackingError;
 use crate::error::checked;
 
@@ -112,7 +112,7 @@ impl ColorCloud {
         memory: f64,
         max_points: usize,
     ) -> Result<Self, TrackingError> {
-        let mut state = ColorState::at_rest(now);
+        let mut state = ColorDistributionState::at_rest(now);
         let [theta, phi] = now.angles_since(before);
         (state.value[6], state.value[7]) = (theta, phi);
         let warp = state.warp_from(before);

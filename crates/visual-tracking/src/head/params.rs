@@ -28,7 +28,7 @@ pub struct HeadTrackerParams {
     /// Intersection below which there is no evidence of the head. Default 0.3.
     pub no_evidence_below_intersection: f64,
     /// Pictures in a row without evidence after which the head is lost. Default 8.
-    pub lost_after: usize,
+    pub lost_after_n_frames: usize,
 }
 
 impl Default for HeadTrackerParams {
@@ -42,7 +42,7 @@ impl Default for HeadTrackerParams {
             color_adaptation_rate: 0.1,
             adapt_above_intersection: 0.6,
             no_evidence_below_intersection: 0.3,
-            lost_after: 8,
+            lost_after_n_frames: 8,
         }
     }
 }

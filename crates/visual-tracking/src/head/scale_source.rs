@@ -3,10 +3,10 @@ use crate::RgbImage;
 /// Source of the size of the head, for example a stereo camera that measures its distance.
 ///
 /// ```
-/// use wayfix_visual_tracking::{RgbImage, ScaleSource};
+/// use wayfix_visual_tracking::{RgbImage, HeadSizeSource};
 /// /// Distances that a stereo camera measured, picture after picture, in metres.
 /// struct Stereo(Vec<f64>);
-/// impl ScaleSource for Stereo {
+/// impl HeadSizeSource for Stereo {
 ///     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
 ///         let first = 2.0;
 ///         self.0.pop().map(|distance| first / distance)
@@ -16,7 +16,7 @@ use crate::RgbImage;
 /// assert_eq!(Stereo(vec![4.0]).scale(&picture, [0.0, 0.0]), Some(0.5));
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
-pub trait ScaleSource {
+pub trait HeadSizeSource {
     /// The size of the head in `picture` beside that in the first one, or `None` where it is to be searched; `center` is where the head
     /// was, in pixels.
     fn scale(&mut self, picture: &RgbImage, center: [f64; 2]) -> Option<f64>;
@@ -24,9 +24,9 @@ pub trait ScaleSource {
 
 /// Leaves the scale to the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SearchedScale;
+pub struct HeadSizeFromSearch;
 
-impl ScaleSource for SearchedScale {
+impl HeadSizeSource for HeadSizeFromSearch {
     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
         None
     }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use super::bimodal::BimodalHistogram;
 use super::edge::GradientField;
 use super::params::HeadTrackerParams;
-use super::scale_source::{ScaleSource, SearchedScale};
+use super::scale_source::{HeadSizeFromSearch, HeadSizeSource};
 use super::search::{Candidate, Search};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
@@ -25,7 +25,7 @@ const N_OUTLINE: usize = 48;
 /// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head [Eq. 28], updated
 /// incrementally between ellipses, and by the gradient across its rim. Both are scaled to their range; the highest sum wins. The colours adapt
 /// [Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more frequent around the
-/// ellipse than in it are excluded. The size comes from a [`ScaleSource`] or from the search.
+/// ellipse than in it are excluded. The size comes from a [`HeadSizeSource`] or from the search.
 /// ```
 /// use rand::SeedableRng;
 /// use rand_chacha::ChaCha8Rng;
@@ -46,7 +46,7 @@ const N_OUTLINE: usize = 48;
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct HeadTracker<S = SearchedScale> {
+pub struct HeadTracker<S = HeadSizeFromSearch> {
     params: HeadTrackerParams,
     picture_size: (usize, usize),
     quantizer: ColorQuantizer,
@@ -117,13 +117,13 @@ impl HeadTracker {
         let model = BimodalHistogram::new(&quantizer, &own, params.bimodal_colors)?;
         let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_without_evidence: 0, is_lost: false };
         let picture_size = (picture.width() as usize, picture.height() as usize);
-        Ok(Self { params, picture_size, quantizer, model, scale_source: SearchedScale, base, state })
+        Ok(Self { params, picture_size, quantizer, model, scale_source: HeadSizeFromSearch, base, state })
     }
 }
 
-impl<S: ScaleSource> HeadTracker<S> {
+impl<S: HeadSizeSource> HeadTracker<S> {
     /// Replaces the source of the scale.
-    pub fn with_scale_source<T: ScaleSource>(self, scale_source: T) -> HeadTracker<T> {
+    pub fn with_scale_source<T: HeadSizeSource>(self, scale_source: T) -> HeadTracker<T> {
         let Self { params, picture_size, quantizer, model, base, state, .. } = self;
         HeadTracker { params, picture_size, quantizer, model, scale_source, base, state }
     }
@@ -171,7 +171,7 @@ impl<S: ScaleSource> HeadTracker<S> {
         }
         if candidate.color < self.params.no_evidence_below_intersection {
             self.state.n_without_evidence += 1;
-            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after;
+            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after_n_frames;
             self.state.velocity = [0; 2];
             return Ok(());
         }
@@ -207,7 +207,7 @@ impl<S: ScaleSource> HeadTracker<S> {
     }
 }
 
-impl<S: ScaleSource> Tracker for HeadTracker<S> {
+impl<S: HeadSizeSource> Tracker for HeadTracker<S> {
     fn track<R: Rng + ?Sized>(
         &mut self,
         picture: &RgbImage,

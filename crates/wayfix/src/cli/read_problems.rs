@@ -1,10 +1,10 @@
-use wayfix_sensor_log::{Log, LogEnd, LogWarning, ReadReport, Record};
+use wayfix_sensor_log::{Log, LogCompleteness, LogReadReport, LogWarning, Record};
 
 use wayfix_evaluation::terminal::print_message;
 use wayfix_systems::system::EventCounts;
 
 /// Reads all records of a log; prints read problems and assumptions.
-pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
+pub(super) fn read_all(log: Log) -> (Vec<Record>, LogReadReport) {
     let (records, read) = log.read_all();
     if !read.is_clean() {
         print_message(&read);
@@ -13,7 +13,7 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
 }
 
 /// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.
-pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> Vec<String> {
+pub(super) fn add_read_problems(events: &mut EventCounts, read: &LogReadReport) -> Vec<String> {
     for refusal in events.refusals() {
         print_message(format!("refused {refusal}"));
     }
@@ -23,7 +23,7 @@ pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> 
     }
     events.warnings().iter().for_each(print_message); // those of the log were printed when it was read
     events.add("log_problem", read.n_problems());
-    if read.end != LogEnd::Complete {
+    if read.end != LogCompleteness::Complete {
         events.count("log_incomplete");
     }
     for LogWarning { name, .. } in &read.warnings {

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
-use wayfix_kalman::{Gpb2Filter, ImmFilter, MarkovChain, SequentialForm};
+use wayfix_kalman::{Gpb2Filter, ImmFilter, MarkovChain, SequentialUpdateAlgorithm};
 
 use super::{
     super::filter::check_seconds,
@@ -17,14 +17,14 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// it switches to one of the bank's lights and restarts at its prior. [Blom & Bar-Shalom 1988]
 #[derive(Clone)]
 pub struct ImmLightingTracker {
-    filter: ImmFilter<LightMotion, SequentialForm>,
+    filter: ImmFilter<LightMotion, SequentialUpdateAlgorithm>,
     noise: Noise,
 }
 
 /// As [`ImmLightingTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
 #[derive(Clone)]
 pub struct Gpb2LightingTracker {
-    filter: Gpb2Filter<LightMotion, SequentialForm>,
+    filter: Gpb2Filter<LightMotion, SequentialUpdateAlgorithm>,
     noise: Noise,
 }
 
@@ -42,7 +42,7 @@ impl ImmLightingTracker {
     /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: ImmFilter::new(motions, chain, SequentialForm, &start)?, noise })
+        Ok(Self { filter: ImmFilter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
 
     /// Probabilities that the light drifts, and that it has just switched to each member of the bank.
@@ -58,7 +58,7 @@ impl Gpb2LightingTracker {
     /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialForm, &start)?, noise })
+        Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
 
     /// As [`ImmLightingTracker::probabilities`].

@@ -1,6 +1,6 @@
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_kalman::{FilterBank, JumpMarkovFilter, JumpMarkovFilterParams, SequentialForm};
+use wayfix_kalman::{FilterBank, JumpMarkovFilter, JumpMarkovFilterParams, SequentialUpdateAlgorithm};
 
 use super::{
     super::filter::check_seconds,
@@ -32,7 +32,7 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// ```
 #[derive(Clone)]
 pub struct JumpMarkovLightingTracker {
-    filter: JumpMarkovFilter<LightMotion, SequentialForm>,
+    filter: JumpMarkovFilter<LightMotion, SequentialUpdateAlgorithm>,
     n_colors: usize,
     mean_color_variance: Vector3<f64>,
     pixel_color_variance: Vector3<f64>,
@@ -48,8 +48,8 @@ impl JumpMarkovLightingTracker {
         };
         let beliefs: Vec<_> = bank.members().iter().map(|light| belief(light)).collect();
         let motions = bank.members().iter().map(|light| LightMotion::drift_of(light)).collect();
-        let models: FilterBank<LightMotion, SequentialForm> =
-            FilterBank::new(motions, SequentialForm, &beliefs)?;
+        let models: FilterBank<LightMotion, SequentialUpdateAlgorithm> =
+            FilterBank::new(motions, SequentialUpdateAlgorithm, &beliefs)?;
         let noise = bank.members().first().map(|light| *light.params()).unwrap_or_default();
         Ok(Self {
             filter: JumpMarkovFilter::new(models, bank.chain().clone(), params)?,

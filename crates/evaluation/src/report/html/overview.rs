@@ -1,10 +1,10 @@
 use super::super::number::duration;
-use super::super::{Metric, PassFailCount, Report, ReportRun, ReportSuite};
+use super::super::{FullReport, Metric, PassFailCount, ReportRun, ReportSuite};
 use super::{anchor, number_cell, table};
 use crate::plot::escape;
 
 /// Verdict, origin and contents.
-pub(super) fn header(report: &Report) -> String {
+pub(super) fn header(report: &FullReport) -> String {
     let verdict = verdict(report.tally());
     let seconds: f64 = report.suites.iter().flat_map(|suite| &suite.runs).map(|run| run.seconds).sum();
     let commit = report.commit.as_deref().unwrap_or("unknown");
@@ -56,7 +56,7 @@ fn verdict(tally: PassFailCount) -> String {
     format!("<p class=\"verdict {class}\">{words}</p>\n")
 }
 
-fn contents(report: &Report) -> String {
+fn contents(report: &FullReport) -> String {
     let row = |(k, n, suite, run): (usize, usize, &ReportSuite, &ReportRun)| {
         let PassFailCount { passed, failed } = run.tally();
         let class = if failed > 0 { " class=\"failed\"" } else { "" };

@@ -5,13 +5,13 @@ use anyhow::Result;
 use serde::Deserialize;
 use wayfix_color_map::ColorMap;
 use wayfix_scene_sim::{Scenario, ScenarioParams, league::LampSetting};
-use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_sensor_log::{LogOpenOptions, Record};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors},
-    system::{RunStep, System},
+    system::{RunStepSnapshot, System},
 };
 
 /// Settings of a run.
@@ -134,7 +134,7 @@ impl Settings {
 }
 
 fn records(job: &PlannedJob<'_>) -> Result<Vec<Record>> {
-    Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
+    Ok(wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all().0)
 }
 
 /// The frames at which the light of a stored log changes.
@@ -149,7 +149,7 @@ fn switches(job: &PlannedJob<'_>) -> Vec<usize> {
 }
 
 fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<ReportRun> {
-    let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
+    let log = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?;
     let (name, path) = job.estimates_file();
     let mut estimates = ColorEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
@@ -162,7 +162,7 @@ fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams
         params,
         None,
         job.options.seed,
-        |RunStep { system, record, .. }| {
+        |RunStepSnapshot { system, record, .. }| {
             estimates.observe(record, system);
             particles.observe(system);
         },

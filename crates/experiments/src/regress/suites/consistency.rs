@@ -36,9 +36,9 @@ enum Settings {
 /// Noise of the monobot: the paper states none.
 #[derive(Clone, Copy, Debug, Deserialize)]
 struct Noise {
-    motion_noise: f64,
-    range_noise: f64,
-    external_sigma_m: f64,
+    motion_sigma_share: f64,
+    range_sigma_share: f64,
+    external_position_sigma_m: f64,
 }
 
 /// The paper's one-dimensional experiments, and laps in the plane.
@@ -80,10 +80,10 @@ fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: No
     let mut metrics: Vec<Metric> = Vec::new();
     for n in n_landmarks {
         let all = monobot::monte_carlo(&noise.params(*n), WorldReference::None, n_runs, job.options.seed)?;
-        metrics.push(Metric::new(format!("end_landmark_error_rms_m_n{n}"), all.end_rms(), "m"));
+        metrics.push(Metric::new(format!("landmark_error_rms_at_end_m_n{n}"), all.end_rms(), "m"));
     }
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
-    metrics.push(Metric::new("landmark_rms_ratio", fall, ""));
+    metrics.push(Metric::new("landmark_error_rms_ratio_fewest_over_most_landmarks", fall, ""));
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
@@ -99,7 +99,13 @@ fn run_laps(job: &PlannedJob<'_>, laps: &CorridorLaps, n_runs: u32) -> Result<Re
 
 impl Noise {
     fn params(self, n_landmarks: usize) -> MonobotParams {
-        let Self { motion_noise, range_noise, external_sigma_m } = self;
-        MonobotParams { n_landmarks, motion_noise, range_noise, external_sigma_m, ..MonobotParams::default() }
+        let Self { motion_sigma_share, range_sigma_share, external_position_sigma_m } = self;
+        MonobotParams {
+            n_landmarks,
+            motion_sigma_share,
+            range_sigma_share,
+            external_position_sigma_m,
+            ..MonobotParams::default()
+        }
     }
 }

@@ -2,14 +2,14 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Deserialize;
-use wayfix_sensor_log::{OpenOptions, read_relations};
+use wayfix_sensor_log::{LogOpenOptions, read_relations};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
     slam::{AssociationRule, SlamEstimateRecorder},
-    system::RunStep,
+    system::RunStepSnapshot,
     walls::{self, WallSlamParams},
 };
 
@@ -38,7 +38,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     if settings.walls {
         return with_walls(job, &settings);
     }
-    let options = OpenOptions { robot: settings.robot, ..OpenOptions::default() };
+    let options = LogOpenOptions { robot: settings.robot, ..LogOpenOptions::default() };
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
     let profile = settings.profile.unwrap_or(RobotProfile::of_log(log.meta()));
     let mut params = match &settings.params {
@@ -50,8 +50,9 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let (name, path) = job.estimates_file();
     let mut estimates = SlamEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
-    let observe =
-        |RunStep { system, record, .. }: RunStep<'_, PointSystem>| estimates.observe(record, system);
+    let observe = |RunStepSnapshot { system, record, .. }: RunStepSnapshot<'_, PointSystem>| {
+        estimates.observe(record, system);
+    };
     let mut slam = points::run(&records, &params, observe)?;
     estimates.finish()?;
     slam.events().add("log_problem", read.n_problems());
@@ -64,7 +65,7 @@ fn with_walls(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
         Some(file) => wayfix_systems::settings::from_toml(&job.read(file)?)?,
         None => WallSlamParams::default(),
     };
-    let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+    let (records, read) = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all();
     let mut slam = walls::run(&records, &params, |_| ())?;
     slam.events().add("log_problem", read.n_problems());
     let mut run = ReportRun { figures: walls::plots(&slam)?, ..walls::summarize(&mut slam) };

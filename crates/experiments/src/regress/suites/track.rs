@@ -4,7 +4,7 @@ use crate::films;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
-use wayfix_sensor_log::{LogFormat, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
@@ -76,7 +76,7 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
 }
 
 fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
-    let options = OpenOptions { format: Some(LogFormat::Images), ..OpenOptions::default() };
+    let options = LogOpenOptions { format: Some(LogFormat::Images), ..LogOpenOptions::default() };
     let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
     let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
     let truth = TrueBoxes::read(&job.recording(truth)?)?;

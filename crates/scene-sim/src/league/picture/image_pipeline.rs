@@ -29,7 +29,8 @@ impl ImagePipeline {
         balance: &LinearRgb,
         rng: &mut R,
     ) -> Vec<u8> {
-        let stray = light.iter().sum::<LinearRgb>() * (self.params.flare / light.len().max(1) as f64);
+        let stray =
+            light.iter().sum::<LinearRgb>() * (self.params.stray_light_share / light.len().max(1) as f64);
         let gains = self.params.white_balance.component_mul(balance) * self.params.gain;
         let grey = light.iter().zip(&self.lens).map(|(light, lens)| {
             let seen = self.mixed(&(light + stray).component_mul(lens));
@@ -45,8 +46,8 @@ impl ImagePipeline {
     }
 
     fn grey_value<R: Rng + ?Sized>(&self, signal: f64, rng: &mut R) -> f64 {
-        let read = self.params.read_noise;
-        let sigma = (signal / self.params.full_well + read * read).sqrt();
+        let read = self.params.read_noise_sigma;
+        let sigma = (signal / self.params.full_well_electrons + read * read).sqrt();
         let noisy = (signal + sigma * quick_normal(rng)).clamp(0.0, 1.0);
         self.response[(noisy * STEPS as f64) as usize]
     }

@@ -14,7 +14,8 @@ use super::{decode, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::formats::format::shortened;
 use crate::{
-    BagTopic, LogEnd, LogError, LogFormat, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp,
+    BagTopic, LogCompleteness, LogError, LogFormat, LogReadReport, Record, RecordData, RowProblem,
+    RowProblemKind, Stamp,
 };
 
 /// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
@@ -32,7 +33,7 @@ impl McapRecords {
         source: &Path,
         files: &[PathBuf],
         wanted: &[String],
-        report: &mut ReadReport,
+        report: &mut LogReadReport,
     ) -> Result<Self, LogError> {
         let files = &readable(files, report)?;
         let parts = Parts::open(files)?;
@@ -58,7 +59,7 @@ impl McapRecords {
     }
 
     /// The next record in time order; problems go into the report.
-    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
         loop {
             if let Some(record) = self.messages.reorder.pop_ready() {
                 return Some(record);
@@ -70,7 +71,7 @@ impl McapRecords {
     }
 
     /// Reads one record of the file; false at its end.
-    fn step(&mut self, report: &mut ReadReport) -> bool {
+    fn step(&mut self, report: &mut LogReadReport) -> bool {
         let (file, step) =
             self.parts.step(|file, opcode, body| self.messages.take(file, opcode, body, report));
         match step {
@@ -85,7 +86,7 @@ impl McapRecords {
                 true
             }
             Step::End(end) => {
-                if end != LogEnd::Complete {
+                if end != LogCompleteness::Complete {
                     report.end = end;
                 }
                 self.messages.finish(report);
@@ -96,7 +97,7 @@ impl McapRecords {
 }
 
 /// The files that can be opened; the others are reported, unless there is none.
-fn readable(files: &[PathBuf], report: &mut ReadReport) -> Result<Vec<PathBuf>, LogError> {
+fn readable(files: &[PathBuf], report: &mut LogReadReport) -> Result<Vec<PathBuf>, LogError> {
     let mut readable = Vec::new();
     let mut first_error = None;
     for path in files {
@@ -178,7 +179,7 @@ impl Messages {
         }
     }
 
-    fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut ReadReport) {
+    fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut LogReadReport) {
         let understood = match opcode {
             op::SCHEMA => self.schema(file, Fields(body)),
             op::CHANNEL => self.channel(file, Fields(body)),
@@ -215,7 +216,7 @@ impl Messages {
         Some(())
     }
 
-    fn message(&mut self, file: usize, mut fields: Fields<'_>, report: &mut ReadReport) -> Option<()> {
+    fn message(&mut self, file: usize, mut fields: Fields<'_>, report: &mut LogReadReport) -> Option<()> {
         let (channel_id, _sequence) = (fields.u16()?, fields.u32()?);
         let (log_time, _publish_time) = (Stamp::from_nanoseconds(fields.u64()?), fields.u64()?);
         self.files[file].n_messages += 1;
@@ -257,7 +258,7 @@ impl Messages {
         Some(())
     }
 
-    fn check_clock(&mut self, file: usize, topic: &str, record: Record, report: &mut ReadReport) {
+    fn check_clock(&mut self, file: usize, topic: &str, record: Record, report: &mut LogReadReport) {
         let clock = self.clocks.entry(topic.to_owned()).or_default();
         let checked = clock.check(record);
         for record in &checked.wrong {
@@ -269,7 +270,7 @@ impl Messages {
         }
     }
 
-    fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut ReadReport) {
+    fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut LogReadReport) {
         let latest = self.clocks.get(topic).and_then(TopicClock::latest);
         let kind =
             if Some(record.stamp) < latest { RowProblemKind::TooLate } else { RowProblemKind::BadStamp };
@@ -278,7 +279,7 @@ impl Messages {
     }
 
     /// Reports the facts known only at the end.
-    fn finish(&mut self, report: &mut ReadReport) {
+    fn finish(&mut self, report: &mut LogReadReport) {
         let held = self
             .clocks
             .iter_mut()
@@ -298,7 +299,7 @@ impl Messages {
         }
     }
 
-    fn release(&mut self, file: usize, records: Vec<Record>, report: &mut ReadReport) {
+    fn release(&mut self, file: usize, records: Vec<Record>, report: &mut LogReadReport) {
         for record in records {
             if let Err(late) = self.reorder.push(record) {
                 let reason =
@@ -308,7 +309,7 @@ impl Messages {
         }
     }
 
-    fn trouble(&self, file: usize, kind: RowProblemKind, reason: String, report: &mut ReadReport) {
+    fn trouble(&self, file: usize, kind: RowProblemKind, reason: String, report: &mut LogReadReport) {
         let FileState { name, n_messages, .. } = &self.files[file];
         report.add(RowProblem { file: name.clone(), row: *n_messages, kind, reason });
     }

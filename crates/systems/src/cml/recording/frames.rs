@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ReadReport, RowProblem, RowProblemKind, image_files};
+use wayfix_sensor_log::{EncodedImage, LogReadReport, RowProblem, RowProblemKind, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
@@ -28,13 +28,13 @@ pub struct PosedFrame {
 
 /// A folder of frames with poses, in capture order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrameRecording {
+pub struct PosedFrameFolder {
     /// Frames with a pose.
     pub frames: Vec<PosedFrame>,
     /// Number of images without a pose.
     pub n_without_pose: usize,
     /// Skipped rows and images, and assumptions made.
-    pub read: ReadReport,
+    pub read: LogReadReport,
     /// Units of the tables.
     pub notes: Vec<String>,
 }
@@ -52,7 +52,7 @@ pub struct PoseTables<'a> {
     pub stamp_columns: Option<&'a PoseTableColumns>,
 }
 
-impl FrameRecording {
+impl PosedFrameFolder {
     /// Reads the images of a folder and the tables of their times and poses. Skips unusable rows and images.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl FrameRecording {
         let Some(first) = names.first() else {
             return Err(RecordingError::Nothing { path: folder.to_owned(), what: "PNG or JPEG images" });
         };
-        let (mut read, mut notes) = (ReadReport::default(), Vec::new());
+        let (mut read, mut notes) = (LogReadReport::default(), Vec::new());
         let rows = poses::read(tables.poses, tables.columns, &mut read, &mut notes)?;
         let found = match tables.stamps {
             Some(path) => Some(path.to_owned()),

@@ -7,7 +7,7 @@ use wayfix_slam_ekf::SlamSnapshot;
 use super::{SavedMapError, envelope};
 use crate::{
     saved::write_atomically,
-    slam::{AssociationRule, FrontEndState},
+    slam::{AssociationRule, SlamFrontEndState},
 };
 
 /// All that a [`SlamSystem`](crate::slam::SlamSystem) remembers between two records, in a file.
@@ -40,7 +40,7 @@ struct Kind {
 }
 
 impl Kind {
-    fn of<S: FrontEndState>() -> Self {
+    fn of<S: SlamFrontEndState>() -> Self {
         Self {
             robot: S::ROBOT.0.to_owned(),
             landmark: S::LANDMARK.0.to_owned(),
@@ -49,7 +49,7 @@ impl Kind {
         }
     }
 
-    fn check<S: FrontEndState>(&self) -> Result<(), SavedMapError> {
+    fn check<S: SlamFrontEndState>(&self) -> Result<(), SavedMapError> {
         let differs = |((what, expected), (_, found)): ((_, String), (&str, String))| {
             (expected != found).then_some(SavedMapError::Kind { what, expected, found })
         };
@@ -67,7 +67,7 @@ impl Kind {
     }
 }
 
-impl<R, L, S: FrontEndState> SlamState<R, L, S>
+impl<R, L, S: SlamFrontEndState> SlamState<R, L, S>
 where
     Self: Serialize + DeserializeOwned,
 {
@@ -134,16 +134,22 @@ pub(crate) fn check_association(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{PointState, SavedPointMap};
+    use crate::points::{PointFrontEndState, SavedPointMap};
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<PointState>() }, "robot is Ackermann"),
-            (Kind { landmark: "wall".to_owned(), ..Kind::of::<PointState>() }, "landmark is wall"),
-            (Kind { robot_dimension: 3, ..Kind::of::<PointState>() }, "robot dimension is 3, here it is 4"),
             (
-                Kind { landmark_dimension: 3, ..Kind::of::<PointState>() },
+                Kind { robot: "Ackermann".to_owned(), ..Kind::of::<PointFrontEndState>() },
+                "robot is Ackermann",
+            ),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<PointFrontEndState>() }, "landmark is wall"),
+            (
+                Kind { robot_dimension: 3, ..Kind::of::<PointFrontEndState>() },
+                "robot dimension is 3, here it is 4",
+            ),
+            (
+                Kind { landmark_dimension: 3, ..Kind::of::<PointFrontEndState>() },
                 "landmark dimension is 3, here it is 2",
             ),
         ] {

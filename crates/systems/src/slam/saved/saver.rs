@@ -4,10 +4,10 @@ use serde::{Serialize, de::DeserializeOwned};
 use wayfix_sensor_log::{Record, Stamp};
 
 use super::{SavedMapError, SlamState};
-use crate::slam::FrontEndState;
+use crate::slam::SlamFrontEndState;
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
-pub struct PeriodicSaver {
+pub struct PeriodicStateSaver {
     path: PathBuf,
     /// Seconds of the log between two saves; only at the end, when not given.
     period: Option<f64>,
@@ -15,7 +15,7 @@ pub struct PeriodicSaver {
     failure: Option<SavedMapError>,
 }
 
-impl PeriodicSaver {
+impl PeriodicStateSaver {
     /// A saver to `path`, every `period` seconds of the log's time.
     pub fn new(path: PathBuf, period: Option<f64>) -> Self {
         Self { path, period, saved_at: None, failure: None }
@@ -23,7 +23,7 @@ impl PeriodicSaver {
 
     /// Saves when it is time, after a record and before `next`. Only between two stamps, so that a resumed run knows by the
     /// stamp what was taken. A failure is kept until [`finish`](Self::finish).
-    pub fn observe<R, L, S: FrontEndState>(
+    pub fn observe<R, L, S: SlamFrontEndState>(
         &mut self,
         record: &Record,
         next: Option<&Record>,
@@ -44,7 +44,7 @@ impl PeriodicSaver {
     ///
     /// # Errors
     /// When that or anything before could not be written.
-    pub fn finish<R, L, S: FrontEndState>(self, state: &SlamState<R, L, S>) -> Result<(), SavedMapError>
+    pub fn finish<R, L, S: SlamFrontEndState>(self, state: &SlamState<R, L, S>) -> Result<(), SavedMapError>
     where
         SlamState<R, L, S>: Serialize + DeserializeOwned,
     {

@@ -3,7 +3,7 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::{Result, ensure};
 use wayfix_evaluation::terminal::{self, print};
 use wayfix_line_extract::LineExtractionParams;
-use wayfix_sensor_log::{LogFormat, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::super::{
     common::Common,
@@ -14,8 +14,8 @@ use super::super::{
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    lines::{self, LineEstimateRecorder, LineSystem},
-    system::{RunStep, Stopwatch, System, drive},
+    lines::{self, LineEstimateRecorder, LineExtractionSystem},
+    system::{RunStepSnapshot, Stopwatch, System, drive},
 };
 
 /// Walls: the straight segments in every laser scan of a log, with their ends.
@@ -55,9 +55,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut system = LineSystem::new(params)?;
-    let options =
-        OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
+    let mut system = LineExtractionSystem::new(params)?;
+    let options = LogOpenOptions {
+        format: arguments.format,
+        topics: arguments.topics.topics,
+        ..LogOpenOptions::default()
+    };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = read_all(log);
@@ -66,7 +69,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut walls: Option<LineEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = terminal::bar(records.len(), "walls");
-    drive(&mut system, &records, |RunStep { system, record, .. }| {
+    drive(&mut system, &records, |RunStepSnapshot { system, record, .. }| {
         if let Some(walls) = &mut walls {
             walls.observe(record, system);
         }
