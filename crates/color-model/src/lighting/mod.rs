@@ -9,7 +9,7 @@ mod params;
 mod tracker;
 mod update;
 
-pub use bank::{LightingBank, SelectedLightingFilter};
+pub use bank::{LightingFilterBank, SelectedLightingFilter};
 pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;

@@ -114,7 +114,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
                      particle: &mut ColorParticle<T>,
                      rng: &mut ParticleChunkRng| {
             let location = &mut particle.state.sampled;
-            location.error = params.camera.after(&location.error, seconds, rng);
+            location.error = params.camera_pose_noise.after(&location.error, seconds, rng);
             let light = particle.state.conditional();
             values.resize(light.n_lights(), 0.0);
             particle.sums.resize(frame.n_colors(), PixelSums::default());

@@ -5,9 +5,9 @@ use wayfix_estimation_traits::Pose3;
 
 use super::{background::ImageHistogram, camera::CameraLocation};
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, FrameContext, LightingFilterParams, LightingTracker,
-    LikelihoodModel, PixelLikelihoodParams, PixelSumDensity, PixelSums, PoseView, PrefixSumImage, YuvImage,
-    gather,
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingFilterParams, LightingTracker,
+    LikelihoodFrameInput, LikelihoodModel, PixelLikelihoodParams, PixelSumDensity, PixelSums,
+    PredictedMapView, PrefixSumImage, YuvImage, gather,
 };
 
 /// Everything that does not change with the frame.
@@ -64,7 +64,7 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
             })
         };
         let sums = map_colors(map.colors().len(), sums_of)?;
-        let context = FrameContext {
+        let context = LikelihoodFrameInput {
             image,
             map,
             camera: *camera,
@@ -103,7 +103,7 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
         {
             return log_likelihoods.fill(f64::NEG_INFINITY);
         }
-        let view = PoseView { camera_pose, sums };
+        let view = PredictedMapView { camera_pose, sums };
         self.scene.likelihood.log_likelihoods(
             &self.frame,
             &mut scratch.likelihood,

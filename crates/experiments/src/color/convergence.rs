@@ -4,7 +4,7 @@ use anyhow::Result;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
 use wayfix_scene_sim::random::RandomStreams;
 
@@ -49,7 +49,7 @@ pub struct ConvergenceTrial {
 pub fn global_start(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     let trials = trials(seeds, |seed| {
@@ -70,7 +70,7 @@ pub fn global_start(
 pub fn kidnapped(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     const BEFORE: usize = 40;
@@ -103,7 +103,7 @@ fn trial(
     drive: LeagueDriveParams,
     start: Option<StartPose>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceTrial> {
     let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_sensor_log::{Record, RecordData};
 
 use wayfix_evaluation::{
@@ -23,7 +23,7 @@ const N_FRAMES: usize = 40;
 pub fn frame_time(
     records: &[Record],
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
     seed: u64,
 ) -> Result<ReportRun> {

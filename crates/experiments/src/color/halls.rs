@@ -4,7 +4,7 @@ use anyhow::Result;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
@@ -22,7 +22,7 @@ pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
     lighting: LampSetting,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ReportRun> {
     let seeds: Vec<u64> = seeds.into_iter().collect();

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingBank,
+    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingFilterBank,
     LightingTracker, PixelClassifier, PixelLikelihoodParams, YuvImage, YuvStandard,
 };
 use wayfix_kalman::JumpMarkovFilterParams;
@@ -26,12 +26,12 @@ pub fn switching(
     records: &[Record],
     switches: &[usize],
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
-    single: &LightingBank,
+    bank: &LightingFilterBank,
+    single: &LightingFilterBank,
     params: &ColorSystemParams,
     seed: u64,
 ) -> Result<ReportRun> {
-    let localized = |bank: &LightingBank| -> Result<Curve> {
+    let localized = |bank: &LightingFilterBank| -> Result<Curve> {
         let run = run(records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
         Ok(rates(&run))
     };

@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_model::{
-    ColorMeans, LightingBank, LightingFilter, LightingFilterParams, LightingPriors, PooledPixelVariance,
-    PriorLearningParams, TrainingVenue, learn_priors,
+    ColorMeans, LightingFilter, LightingFilterBank, LightingFilterParams, LightingPriors,
+    PooledPixelVariance, PriorLearningParams, TrainingVenue, learn_priors,
 };
 use wayfix_kalman::MarkovChain;
 use wayfix_scene_sim::league::{COLOR_NAMES, TrainingVenuesParams};
@@ -71,7 +71,7 @@ fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVen
 ///
 /// # Errors
 /// Returns an error if a prior or a parameter is invalid.
-pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
+pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingFilterBank> {
     let lighting = LightingFilterParams {
         pixel_color_variance: params
             .pixel_color_variance
@@ -82,5 +82,5 @@ pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<Light
     };
     let filters = priors.members().iter().map(|prior| LightingFilter::new(prior.clone(), lighting));
     let chain = MarkovChain::sticky(priors.members().len(), params.light_persistence)?;
-    Ok(LightingBank::new(filters.collect::<Result<_, _>>()?, chain)?)
+    Ok(LightingFilterBank::new(filters.collect::<Result<_, _>>()?, chain)?)
 }

@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
@@ -35,7 +35,7 @@ pub struct ColorRun {
 pub fn run(
     records: &[Record],
     map: Arc<ColorMap>,
-    bank: LightingBank,
+    bank: LightingFilterBank,
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,

@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 205] = [
+const RENAMED: [(&str, &str); 210] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -21,6 +21,7 @@ const RENAMED: [(&str, &str); 205] = [
     ("bearing_per_extent", "bearing_sigma_per_extent"),
     ("bimodal", "bimodal_colors"),
     ("bins", "color_bins"),
+    ("camera", "camera_pose_noise"),
     ("certainly_new", "new_landmark_nis"),
     ("choice", "action_selection"),
     ("clutter", "mean_clutter"),
@@ -77,6 +78,7 @@ const RENAMED: [(&str, &str); 205] = [
     ("independent_rad", "point_error_correlation_angle_rad"),
     ("inertia", "previous_filter_weight"),
     ("initial_kernel_m", "initial_robust_kernel_width_m"),
+    ("interval", "search_interval"),
     ("kept_distance", "alternative_kept_distance"),
     ("kernel_m", "robust_kernel_width_m"),
     ("largest_gap", "max_wall_gap"),
@@ -122,6 +124,7 @@ const RENAMED: [(&str, &str); 205] = [
     ("mu", "agreement_weights"),
     ("n_detections", "min_detections"),
     ("n_drawn", "n_sampled_trajectories"),
+    ("n_frames", "n_buffered_frames"),
     ("n_moves", "n_first_round_moves"),
     ("n_places", "n_refined_places"),
     ("n_scales", "n_scale_hypotheses"),
@@ -167,6 +170,7 @@ const RENAMED: [(&str, &str); 205] = [
     ("response_width", "target_response_width"),
     ("restart_nis", "tentative_restart_nis"),
     ("rotation", "rotation_sigma"),
+    ("rotation_per_root_second", "rotation_sigma_per_root_second"),
     ("scale_filter_rate", "scale_filter_learning_rate"),
     ("scale_rate", "scale_filter_learning_rate"),
     ("sense", "azimuth_direction"),
@@ -188,6 +192,7 @@ const RENAMED: [(&str, &str); 205] = [
     ("taught_pose", "taught_pose_uncertainty"),
     ("tolerance", "same_place_tolerance"),
     ("tone", "intensity_scale"),
+    ("translation_per_root_second", "translation_sigma_per_root_second"),
     ("turn_command_shortening", "turn_command_time_loss"),
     ("uneven_brightness", "brightness_variation"),
     ("uneven_chroma", "brightness_variation"),

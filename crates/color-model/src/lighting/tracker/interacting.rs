@@ -9,7 +9,7 @@ use super::{
     LightingTracker,
     models::{LightMotion, seen},
 };
-use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
+use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingFilterBank};
 
 /// The interacting multiple model filter for a light that switches occasionally.
 ///
@@ -40,7 +40,7 @@ impl ImmLightingTracker {
     /// mean.
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
-    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    pub fn new(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: ImmFilter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
@@ -56,7 +56,7 @@ impl Gpb2LightingTracker {
     ///
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
-    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    pub fn new(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
@@ -75,7 +75,7 @@ struct Models {
 }
 
 impl Models {
-    fn of(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    fn of(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let priors: Vec<_> = bank.members().iter().map(|light| light.prior().clone()).collect();
         let start = moment_matched(bank.chain().initial(), &priors).map_err(GaussianError::from)?;
         let params =
