@@ -77,9 +77,8 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         ..LinePlot::default()
     };
     let of = |(what, times): (&str, &[(f64, f64)])| {
-        let named = |(n, (_, ms)): (&usize, &(f64, f64))| {
-            Metric::new(format!("{what}_ms_{n}_references_references"), *ms, "ms")
-        };
+        let named =
+            |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}_references"), *ms, "ms");
         N_REFERENCES.iter().zip(times).map(named).collect::<Vec<_>>()
     };
     let timings = [

@@ -36,7 +36,7 @@ pub fn other_halls(
         .collect::<Result<_>>()?;
     let value = |run: &ReportRun, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
     let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
-    let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
+    let rates = map.colors().iter().map(|color| (format!("classification_rate_{color}"), ""));
     let errors =
         [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("dead_reckoning_position_error_mean_m", "m")];
     let overall = [("classification_rate", "")];

@@ -51,7 +51,7 @@ fn figures_have_the_names_of_the_contract() {
     for name in ["trials", "successes", "steps_mean", "steps_to_certainty_mean"] {
         assert!(outcome.metric(name).is_finite(), "{name}");
     }
-    assert_eq!((outcome.metric("trials"), outcome.metric("n_states")), (20.0, 13.0 * 9.0));
+    assert_eq!((outcome.metric("trials"), outcome.metric("n_places")), (20.0, 13.0 * 9.0));
     let events =
         ["arrived_at_goal", "arrived_elsewhere", "ended_unsure_of_place"].map(|name| outcome.event(name));
     assert_eq!(events.iter().sum::<u64>(), 20, "every drive ends in one of three ways: {events:?}");
