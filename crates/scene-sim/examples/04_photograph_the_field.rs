@@ -2,7 +2,7 @@
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::SimulationError;
-use wayfix_scene_sim::league::{COLOR_NAMES, LampSetting, LeagueDrive, LeagueDriveParams, LeaguePicture};
+use wayfix_scene_sim::league::{COLOR_NAMES, LampSetting, LeagueDrive, LeagueParams, LeaguePicture};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::EncodedImage;
 
@@ -19,12 +19,8 @@ fn summary(picture: &LeaguePicture, color: usize) -> Option<(usize, [usize; 3])>
 fn main() -> Result<(), SimulationError> {
     let seed = std::env::args().nth(1).and_then(|seed| seed.parse().ok()).unwrap_or(1);
     let lights = vec![(0, LampSetting::Bright), (4, LampSetting::Dark)];
-    let params = LeagueDriveParams {
-        n_frames: 8,
-        period_ms: 1000,
-        lamp_settings: lights,
-        ..LeagueDriveParams::default()
-    };
+    let params =
+        LeagueParams { n_frames: 8, period_ms: 1000, lamp_settings: lights, ..LeagueParams::default() };
     let drive = LeagueDrive::new(&params, RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
     let quality = drive.venue().camera.jpeg_quality;
     for frame in drive {

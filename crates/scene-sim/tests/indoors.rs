@@ -102,7 +102,7 @@ fn people_and_the_light_do_not_disturb_where_the_robot_drives() {
         tour(&building, params, 20.0, 1).iter().map(|step| (step.pose, step.odometry)).collect::<Vec<_>>()
     };
     let ambient_light =
-        AmbientLightParams { mean_lamp_switching_interval_s: Some(1.0), ..AmbientLightParams::default() };
+        AmbientLightParams { mean_lamp_switching_s: Some(1.0), ..AmbientLightParams::default() };
     assert_eq!(
         poses(IndoorDriveParams { n_people: 9, ambient_light, ..IndoorDriveParams::default() }),
         poses(IndoorDriveParams::default())
@@ -177,9 +177,9 @@ fn rearranging_nothing_changes_nothing() {
 fn switching_changes_the_lab_and_leaves_the_default_alone() {
     let building = Laboratory::draw(&mut rng()).building();
     let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorDriveParams::default().drive };
-    let change = |mean_lamp_switching_interval_s| {
+    let change = |mean_lamp_switching_s| {
         let ambient_light = AmbientLightParams {
-            mean_lamp_switching_interval_s,
+            mean_lamp_switching_s,
             daylight_log_sigma: 0.0,
             ..AmbientLightParams::default()
         };
@@ -259,7 +259,7 @@ fn numbers_without_a_meaning_are_refused() {
         IndoorDriveParams { n_people: 1 << 20, ..params },
         IndoorDriveParams {
             ambient_light: AmbientLightParams {
-                mean_lamp_switching_interval_s: Some(0.0),
+                mean_lamp_switching_s: Some(0.0),
                 ..AmbientLightParams::default()
             },
             ..params

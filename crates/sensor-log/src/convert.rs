@@ -2,7 +2,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::write::write_from;
-use crate::{Log, LogError, LogFormat, LogReadReport, LogWriteReport};
+use crate::{Log, LogError, LogFormat, ReadReport, WriteReport};
 
 /// Writes the remaining records of a log to the file at `path`, replacing it, and reports what could not be read or written.
 ///
@@ -25,7 +25,7 @@ pub fn convert(
     mut log: Log,
     path: impl AsRef<Path>,
     format: LogFormat,
-) -> Result<(LogReadReport, LogWriteReport), LogError> {
+) -> Result<(ReadReport, WriteReport), LogError> {
     let path = path.as_ref();
     // A path that does not exist has no canonical form and cannot be the log.
     let canonical = |path: &Path| fs::canonicalize(path).ok();

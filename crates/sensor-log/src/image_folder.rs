@@ -6,7 +6,7 @@ use std::iter::Enumerate;
 use std::path::{Path, PathBuf};
 use std::vec;
 
-use crate::{EncodedImage, LogError, LogReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp};
+use crate::{EncodedImage, LogError, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp};
 
 /// No frame is larger; a file that is something else must not fill the memory.
 const MAX_FILE_BYTES: u64 = 128 << 20;
@@ -36,7 +36,7 @@ impl ImageFolder {
     }
 
     /// The next frame that can be read; the others go into the report and leave a gap in time.
-    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         if let Some(doubt) = self.doubt.take() {
             report.warn("duplicate_image_number", doubt);
         }

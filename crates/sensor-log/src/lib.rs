@@ -1,6 +1,6 @@
 //! Stamped robot records: readers for public data sets, MCAP and folders of images, and writers for the same.
 //!
-//! [`open`] (for a log in several files, [`open_all`]) gives the records of a log of any format in time order, and a [`LogReadReport`] of what could
+//! [`open`] (for a log in several files, [`open_all`]) gives the records of a log of any format in time order, and a [`ReadReport`] of what could
 //! not be read:
 //! | format | is | holds |
 //! | --- | --- | --- |
@@ -70,9 +70,9 @@ pub use record::{
     CameraInfo, Detection, DetectionTarget, Record, RecordData, TrueLandmark, TruePosition, TrueWall,
     Velocity,
 };
-pub use report::{LogCompleteness, LogReadReport, LogWarning, RowProblem, RowProblemKind};
+pub use report::{LogCompleteness, LogWarning, ReadReport, RowProblem, RowProblemKind};
 pub use scan::{LaserScan, LogScanStatistics};
 pub use stamp::Stamp;
 pub use summary::{LogSummary, RecordKindSummary};
 pub use text::{PoseRelation, read_relations};
-pub use write::{LogWriteReport, write};
+pub use write::{WriteReport, write};

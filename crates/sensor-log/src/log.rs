@@ -5,7 +5,7 @@ use std::vec;
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
-use crate::{BagTopic, LogFormat, LogReadReport, Record};
+use crate::{BagTopic, LogFormat, ReadReport, Record};
 
 /// An open log: an iterator over its records in time order, with metadata.
 ///
@@ -15,7 +15,7 @@ pub struct Log {
     /// The record that was read to see whether there is one.
     first: Option<Record>,
     rest: Records,
-    report: LogReadReport,
+    report: ReadReport,
 }
 
 /// Metadata of a log.
@@ -53,7 +53,7 @@ pub(crate) enum Records {
 
 impl Records {
     /// The next record in time order; problems go into the report.
-    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         match self {
             Self::Memory(records) => records.next(),
             Self::Mcap(records) => records.next(report),
@@ -64,7 +64,7 @@ impl Records {
 }
 
 impl Log {
-    pub(crate) fn new(meta: LogMetadata, first: Record, rest: Records, report: LogReadReport) -> Self {
+    pub(crate) fn new(meta: LogMetadata, first: Record, rest: Records, report: ReadReport) -> Self {
         Self { meta, first: Some(first), rest, report }
     }
     /// Metadata of the log.
@@ -72,11 +72,11 @@ impl Log {
         &self.meta
     }
     /// Report of the reading so far.
-    pub fn report(&self) -> &LogReadReport {
+    pub fn report(&self) -> &ReadReport {
         &self.report
     }
     /// All remaining records, and the complete report.
-    pub fn read_all(mut self) -> (Vec<Record>, LogReadReport) {
+    pub fn read_all(mut self) -> (Vec<Record>, ReadReport) {
         let records = self.by_ref().collect();
         (records, self.report)
     }

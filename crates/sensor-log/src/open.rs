@@ -7,7 +7,7 @@ use crate::log::Records;
 use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
 use crate::{
-    Log, LogCompleteness, LogError, LogFormat, LogMetadata, LogReadReport, LogWarning, Record, RecordData,
+    Log, LogCompleteness, LogError, LogFormat, LogMetadata, LogWarning, ReadReport, Record, RecordData,
 };
 
 /// Options for opening a log. The default detects all of them.
@@ -132,7 +132,7 @@ fn open_files(
     }
     let mut meta =
         LogMetadata { format, origin: None, source: path.into(), files, robot: None, topics: Vec::new() };
-    let mut report = LogReadReport { warnings, ..LogReadReport::default() };
+    let mut report = ReadReport { warnings, ..ReadReport::default() };
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
         LogFormat::Utias => {
@@ -161,7 +161,7 @@ fn open_files(
 }
 
 /// Reason for the absence of records: damage, wrong content, or an empty log.
-fn nothing_in(path: &Path, format: LogFormat, report: &LogReadReport) -> LogError {
+fn nothing_in(path: &Path, format: LogFormat, report: &ReadReport) -> LogError {
     let path = path.to_path_buf();
     if report.end != LogCompleteness::Complete {
         LogError::Damaged { path, end: report.end.clone() }

@@ -10,7 +10,7 @@ const MAX_EXAMPLES: usize = 20;
 ///
 /// `Display` prints it for people, one line per fact.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct LogReadReport {
+pub struct ReadReport {
     /// Number of rows or messages read.
     pub rows_read: u64,
     /// Count of each kind of problem.
@@ -109,7 +109,7 @@ impl RowProblemKind {
     }
 }
 
-impl LogReadReport {
+impl ReadReport {
     /// Problems of all kinds together.
     pub fn n_problems(&self) -> u64 {
         self.problems.values().sum()
@@ -165,7 +165,7 @@ impl LogReadReport {
     }
 }
 
-impl fmt::Display for LogReadReport {
+impl fmt::Display for ReadReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} rows read, {} problems", self.rows_read, self.n_problems())?;
         for (kind, count) in &self.problems {

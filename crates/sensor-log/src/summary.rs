@@ -2,8 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::{
-    DetectionTarget, Log, LogImageStatistics, LogMetadata, LogReadReport, LogScanStatistics, RecordData,
-    Stamp,
+    DetectionTarget, Log, LogImageStatistics, LogMetadata, LogScanStatistics, ReadReport, RecordData, Stamp,
 };
 
 /// Content of a log; `Display` prints it for people.
@@ -44,7 +43,7 @@ pub struct LogSummary {
     /// Laser scans.
     pub scans: LogScanStatistics,
     /// Report of the reading.
-    pub report: LogReadReport,
+    pub report: ReadReport,
 }
 
 /// Records of one kind.
@@ -81,7 +80,7 @@ impl LogSummary {
             n_unlabelled: 0,
             images: BTreeMap::new(),
             scans: LogScanStatistics::default(),
-            report: LogReadReport::default(),
+            report: ReadReport::default(),
         };
         for record in log.by_ref() {
             summary.add(record.stamp, &record.data);

@@ -9,14 +9,14 @@ use crate::{LogError, LogFormat, McapWriter, Record};
 
 /// Report of writing a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub struct LogWriteReport {
+pub struct WriteReport {
     /// Records that went into the file.
     pub records_written: u64,
     /// Count of the skipped records by kind, which the format cannot store.
     pub left_out: BTreeMap<&'static str, u64>,
 }
 
-impl LogWriteReport {
+impl WriteReport {
     pub(crate) fn leave_out(&mut self, what: &'static str) {
         *self.left_out.entry(what).or_default() += 1;
     }
@@ -43,7 +43,7 @@ pub fn write(
     path: impl AsRef<Path>,
     format: LogFormat,
     records: impl IntoIterator<Item = Record>,
-) -> Result<LogWriteReport, LogError> {
+) -> Result<WriteReport, LogError> {
     write_from(path.as_ref(), format, format, records)
 }
 
@@ -53,8 +53,8 @@ pub(crate) fn write_from(
     format: LogFormat,
     origin: LogFormat,
     records: impl IntoIterator<Item = Record>,
-) -> Result<LogWriteReport, LogError> {
-    let mut report = LogWriteReport::default();
+) -> Result<WriteReport, LogError> {
+    let mut report = WriteReport::default();
     match format {
         LogFormat::Utias
         | LogFormat::VictoriaPark
@@ -99,7 +99,7 @@ pub(crate) fn write_from(
     Ok(report)
 }
 
-impl fmt::Display for LogWriteReport {
+impl fmt::Display for WriteReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} records written", self.records_written)?;
         for (what, count) in &self.left_out {

@@ -16,8 +16,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_sensor_log::{
-    CameraInfo, EncodedImage, ImageFileFormat, LogError, LogFormat, LogOpenOptions, LogReadReport,
-    LogSummary, McapWriter, Record, RecordData, RowProblemKind, Stamp, convert, open, topics, write,
+    CameraInfo, EncodedImage, ImageFileFormat, LogError, LogFormat, LogOpenOptions, LogSummary, McapWriter,
+    ReadReport, Record, RecordData, RowProblemKind, Stamp, convert, open, topics, write,
 };
 
 const INFO: CameraInfo = CameraInfo { width: 16, height: 12, fx: 14.25, fy: 14.5, cx: 8.0, cy: 6.125 };
@@ -49,7 +49,7 @@ fn league_drive(n_frames: u8) -> Vec<Record> {
     records
 }
 
-fn read(path: &Path) -> (Vec<Record>, LogReadReport) {
+fn read(path: &Path) -> (Vec<Record>, ReadReport) {
     open(path, &LogOpenOptions::default()).unwrap().read_all()
 }
 

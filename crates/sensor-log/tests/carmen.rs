@@ -9,7 +9,7 @@ use std::path::Path;
 use flate2::{Compression, write::GzEncoder};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogCompleteness, LogFormat, LogOpenOptions, LogReadReport, PoseKind, Record, RecordData, RowProblemKind,
+    LogCompleteness, LogFormat, LogOpenOptions, PoseKind, ReadReport, Record, RecordData, RowProblemKind,
     open,
 };
 
@@ -28,7 +28,7 @@ fn gzip(text: &str) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, LogReadReport) {
+fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
     fs::write(path, bytes).unwrap();
     let log = open(path, &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, LogFormat::Carmen);

@@ -6,14 +6,14 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_sensor_log::{LogOpenOptions, LogReadReport, Record, RecordData, open};
+use wayfix_sensor_log::{LogOpenOptions, ReadReport, Record, RecordData, open};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
     let ranges = format!("{range} ").repeat(n_beams);
     format!("FLASER {n_beams} {ranges}{pose} {odometry} {seconds} host {seconds}\n")
 }
 
-fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, LogReadReport) {
+fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
     fs::write(path, bytes).unwrap();
     open(path, &LogOpenOptions::default()).unwrap().read_all()
 }
@@ -23,7 +23,7 @@ fn n_scans(records: &[Record]) -> usize {
 }
 
 /// The warnings of a log, by name.
-fn warned(report: &LogReadReport) -> Vec<&str> {
+fn warned(report: &ReadReport) -> Vec<&str> {
     report.warnings.iter().map(|warning| warning.name).collect()
 }
 

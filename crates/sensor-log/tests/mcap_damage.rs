@@ -14,7 +14,7 @@ use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use proptest::prelude::*;
 use wayfix_sensor_log::{
-    LogCompleteness, LogError, LogFormat, LogOpenOptions, LogReadReport, McapWriter, Record, RecordData,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, McapWriter, ReadReport, Record, RecordData,
     RowProblemKind, open, write,
 };
 
@@ -29,7 +29,7 @@ impl Scratch {
         let path = folder.path().join("log.mcap");
         Self { _folder: folder, path }
     }
-    fn read(&self, bytes: &[u8]) -> Result<(Vec<Record>, LogReadReport), LogError> {
+    fn read(&self, bytes: &[u8]) -> Result<(Vec<Record>, ReadReport), LogError> {
         fs::write(&self.path, bytes).unwrap();
         open(&self.path, &LogOpenOptions::default()).map(|log| log.read_all())
     }

@@ -11,7 +11,7 @@ use foxglove::messages::{JointState, JointStates, LaserScan as ScanMessage, Pose
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use wayfix_sensor_log::{
-    AckermannDrive, LaserScan, LogOpenOptions, LogReadReport, McapWriter, Record, RecordData, RowProblemKind,
+    AckermannDrive, LaserScan, LogOpenOptions, McapWriter, ReadReport, Record, RecordData, RowProblemKind,
     Stamp, open, topics,
 };
 
@@ -27,7 +27,7 @@ fn add<M: Encode + prost::Message>(file: &mut File, topic: &str, metadata: &[(&s
     file.write_to_known_channel(&header, &message.encode_to_vec()).unwrap();
 }
 
-fn read(fill: impl FnOnce(&mut File)) -> (Vec<RecordData>, LogReadReport) {
+fn read(fill: impl FnOnce(&mut File)) -> (Vec<RecordData>, ReadReport) {
     let mut file = WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
     fill(&mut file);
     file.finish().unwrap();

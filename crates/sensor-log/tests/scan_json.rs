@@ -6,7 +6,7 @@ use std::fs;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogCompleteness, LogError, LogFormat, LogOpenOptions, LogReadReport, Record, RecordData, RowProblemKind,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, RowProblemKind,
     open,
 };
 
@@ -19,7 +19,7 @@ fn document(entries: &[String]) -> String {
     format!("\n {{\"comment\": [1, {{}}], \"map\": {{{}}}}}", entries.join(",\n"))
 }
 
-fn read(text: &str) -> Result<(Vec<Record>, LogReadReport), LogError> {
+fn read(text: &str) -> Result<(Vec<Record>, ReadReport), LogError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scans.json");
     fs::write(&path, text).unwrap();

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::Path;
 
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogReadReport, Record, open};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport, Record, open};
 
 fn write(folder: &Path, name: &str, text: &str) {
     fs::write(folder.join(name), text).expect("the scratch folder is writable");
 }
 
 /// Opens a text that is written as `name`.
-fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, LogReadReport) {
+fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, ReadReport) {
     fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
     let log = open(folder.join(name), &LogOpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;

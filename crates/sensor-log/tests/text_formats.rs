@@ -5,7 +5,7 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Detection, DetectionTarget, LogError, LogFormat, LogOpenOptions, LogReadReport, PoseKind, Record,
+    Detection, DetectionTarget, LogError, LogFormat, LogOpenOptions, PoseKind, ReadReport, Record,
     RecordData, RowProblemKind, Stamp, TrueLandmark, Velocity, open,
 };
 
@@ -177,7 +177,7 @@ fn what_cannot_be_opened_says_why() {
 }
 
 /// Opens a text that is written as `name`.
-fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, LogReadReport) {
+fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, ReadReport) {
     fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
     let log = open(folder.join(name), &LogOpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;

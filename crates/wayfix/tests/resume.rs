@@ -18,7 +18,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_systems::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
 use wayfix_systems::slam::{AssociationRule, SavedMapError};
-use wayfix_systems::system::RunStepSnapshot;
+use wayfix_systems::system::RunStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;
@@ -35,7 +35,7 @@ fn nearest_neighbour() -> PointSlamParams {
 /// The bytes that a run without a break saves after each stamp of its log.
 fn saved_after_each_stamp(records: &[Record], params: &PointSlamParams) -> BTreeMap<u64, Vec<u8>> {
     let mut saved = BTreeMap::new();
-    run(records, params, |RunStepSnapshot { system, .. }| {
+    run(records, params, |RunStep { system, .. }| {
         let map = system.save();
         saved.insert(map.taken_until, map.to_bytes().unwrap());
     })
@@ -56,7 +56,7 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         let records = records(&log);
         let mut halves = Vec::new();
         let stop = records[records.len() / 2].stamp;
-        let whole = run(&records, &params, |RunStepSnapshot { system, .. }| {
+        let whole = run(&records, &params, |RunStep { system, .. }| {
             let map = system.save();
             if map.taken_until <= stop.nanoseconds() {
                 halves = vec![map];

@@ -12,6 +12,6 @@ pub use alignment::{align, median_distance, rms_distance};
 pub use interval::{MeanInterval, proportion_interval};
 pub use landmarks::{LandmarkCorrespondence, landmark_errors};
 pub use positions::TruePositions;
-pub use trajectory::{EstimatedAndTruePose, TrajectoryErrors, trajectory_errors};
+pub use trajectory::{PoseWithTruth, TrajectoryErrors, trajectory_errors};
 pub use truth::LONGEST_GAP;
 pub use truth::ReferencePath;

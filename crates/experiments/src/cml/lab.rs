@@ -74,10 +74,8 @@ fn growth(name: &str, seeds: &[[SimulatedDriveResult; 4]], at: usize) -> Vec<Met
 /// The same drive with passive and with active forgetting, then both as published.
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 4]> {
     let building = Laboratory::draw(&mut Draw::World.rng(seed)).building();
-    let ambient_light = AmbientLightParams {
-        mean_lamp_switching_interval_s: Some(SWITCHING_S),
-        ..AmbientLightParams::default()
-    };
+    let ambient_light =
+        AmbientLightParams { mean_lamp_switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
     let params =
         IndoorDriveParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorDriveParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;

@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
+use wayfix_scene_sim::league::{LampSetting, LeagueParams};
 use wayfix_scene_sim::random::RandomStreams;
 
 use crate::error_quantiles::error_quantiles;
@@ -53,10 +53,10 @@ pub fn global_start(
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     let trials = trials(seeds, |seed| {
-        let drive = LeagueDriveParams {
+        let drive = LeagueParams {
             n_frames: FRAMES,
             lamp_settings: vec![(0, lighting(seed))],
-            ..LeagueDriveParams::default()
+            ..LeagueParams::default()
         };
         trial(seed, drive, Some(StartPose::Anywhere), map, bank, params)
     })?;
@@ -75,11 +75,11 @@ pub fn kidnapped(
 ) -> Result<ConvergenceCount> {
     const BEFORE: usize = 40;
     let trials = trials(seeds, |seed| {
-        let drive = LeagueDriveParams {
+        let drive = LeagueParams {
             n_frames: BEFORE + FRAMES,
             kidnap_frames: vec![BEFORE],
             lamp_settings: vec![(0, lighting(seed))],
-            ..LeagueDriveParams::default()
+            ..LeagueParams::default()
         };
         trial(seed, drive, None, map, bank, params)
     })?;
@@ -100,7 +100,7 @@ fn trials(
 
 fn trial(
     seed: u64,
-    drive: LeagueDriveParams,
+    drive: LeagueParams,
     start: Option<StartPose>,
     map: &Arc<ColorMap>,
     bank: &LightingFilterBank,

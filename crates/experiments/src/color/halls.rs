@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueDriveParams};
+use wayfix_scene_sim::league::{LampSetting, LeagueParams};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
 
@@ -54,6 +54,6 @@ pub fn other_halls(
 
 /// The drive of the stored logs in its own hall.
 pub(super) fn drive(seed: u64, lighting: LampSetting) -> Result<Vec<Record>> {
-    let drive = LeagueDriveParams { lamp_settings: vec![(0, lighting)], ..LeagueDriveParams::default() };
+    let drive = LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() };
     Ok(drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

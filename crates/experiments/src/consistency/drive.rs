@@ -7,7 +7,7 @@ use wayfix_slam_ekf::{
 
 use super::{ComparedFilter, CorridorLaps};
 use crate::monobot::plain_filter;
-use wayfix_evaluation::errors::EstimatedAndTruePose;
+use wayfix_evaluation::errors::PoseWithTruth;
 
 /// Estimate and truth after one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +99,7 @@ fn consistency_sample(
     truth: Pose2<f64>,
     seconds: f64,
 ) -> ConsistencySample {
-    let sample = EstimatedAndTruePose { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
+    let sample = PoseWithTruth { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
     ConsistencySample {
         seconds,
         nees: sample.nees_of(&kind.error(&sample)).unwrap_or(f64::NAN),

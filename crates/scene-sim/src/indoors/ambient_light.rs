@@ -18,7 +18,7 @@ pub struct AmbientLightParams {
     /// Standard deviation of the logarithm of each group of lamps from one drive to the next: some fail, some are new. Default 0.1.
     pub lamp_log_sigma_between_drives: f64,
     /// Mean time between two changes by people who switch lamps and draw curtains, s; `None` for no changes. Default `None`.
-    pub mean_lamp_switching_interval_s: Option<f64>,
+    pub mean_lamp_switching_s: Option<f64>,
 }
 
 impl Default for AmbientLightParams {
@@ -27,7 +27,7 @@ impl Default for AmbientLightParams {
             daylight_log_sigma: 0.35,
             daylight_correlation_s: 600.0,
             lamp_log_sigma_between_drives: 0.1,
-            mean_lamp_switching_interval_s: None,
+            mean_lamp_switching_s: None,
         }
     }
 }
@@ -41,7 +41,7 @@ impl AmbientLightParams {
         check::not_negative("σ of the daylight", self.daylight_log_sigma)?;
         check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
         check::not_negative("σ of the lamps", self.lamp_log_sigma_between_drives)?;
-        check::positive("time between switchings (s)", self.mean_lamp_switching_interval_s.unwrap_or(1.0))
+        check::positive("time between switchings (s)", self.mean_lamp_switching_s.unwrap_or(1.0))
     }
 }
 
@@ -93,10 +93,8 @@ impl AmbientLight {
         let clouds = self.clouds.advance(seconds, streams.of(RandomStreamPurpose::Daylight));
         self.daylight = libm::exp(self.params.daylight_log_sigma * clouds);
         let rng = streams.of(RandomStreamPurpose::Switching);
-        let share = self
-            .params
-            .mean_lamp_switching_interval_s
-            .map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
+        let share =
+            self.params.mean_lamp_switching_s.map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
         if chance(share, rng) {
             self.switch(rng);
         }

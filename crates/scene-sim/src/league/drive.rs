@@ -4,7 +4,7 @@ use rand_chacha::rand_core::SeedableRng;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::{
-    CameraSimulator, LampSetting, LeagueDriveParams, LeaguePicture, LeagueScene, LeagueVenue, LeggedRobot,
+    CameraSimulator, LampSetting, LeagueParams, LeaguePicture, LeagueScene, LeagueVenue, LeggedRobot,
     LinearRgb, SceneSurface, UnmappedObjects, field_map, landmarks,
 };
 use crate::SimulationError;
@@ -34,15 +34,15 @@ pub struct LeagueFrame {
 /// Iterator over the frames of a drive.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{league::{LeagueDriveParams, LeagueDrive}, random::RandomStreams};
-/// let params = LeagueDriveParams { n_frames: 3, ..LeagueDriveParams::default() };
+/// use wayfix_scene_sim::{league::{LeagueParams, LeagueDrive}, random::RandomStreams};
+/// let params = LeagueParams { n_frames: 3, ..LeagueParams::default() };
 /// let drive = LeagueDrive::new(&params, RandomStreams::new(ChaCha8Rng::seed_from_u64(1)))?;
 /// let stamps: Vec<u64> = drive.map(|frame| frame.milliseconds).collect();
 /// assert_eq!(stamps, [100, 200, 300]);
 /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 pub struct LeagueDrive {
-    params: LeagueDriveParams,
+    params: LeagueParams,
     streams: RandomStreams,
     venue: LeagueVenue,
     map: Vec<SceneSurface>,
@@ -63,7 +63,7 @@ impl LeagueDrive {
     ///
     /// # Errors
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
-    pub fn new(params: &LeagueDriveParams, mut streams: RandomStreams) -> Result<Self, SimulationError> {
+    pub fn new(params: &LeagueParams, mut streams: RandomStreams) -> Result<Self, SimulationError> {
         let venue = match params.venue_seed {
             Some(seed) => LeagueVenue::draw(
                 RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)).of(RandomStreamPurpose::Venue),
@@ -78,14 +78,14 @@ impl LeagueDrive {
     /// # Errors
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
     pub fn in_venue(
-        params: &LeagueDriveParams,
+        params: &LeagueParams,
         venue: LeagueVenue,
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate(&venue.camera)?;
         let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;
         let camera_simulator = CameraSimulator::new(venue.camera)?;
-        let drift = GaussMarkovProcess::new(venue.camera.white_balance_drift_correlation_s);
+        let drift = GaussMarkovProcess::new(venue.camera.white_balance_correlation_s);
         Ok(Self {
             map: SceneSurface::of_map(&field_map()?),
             things: UnmappedObjects::draw(streams.of(RandomStreamPurpose::UnmappedObjects)),

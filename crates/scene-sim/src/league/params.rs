@@ -5,7 +5,7 @@ use crate::{SimulationError, check};
 
 /// One drive over the field with the camera running.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LeagueDriveParams {
+pub struct LeagueParams {
     /// Number of frames, at most 100 000. Default 280.
     pub n_frames: usize,
     /// Time from one to the next, milliseconds; longer than the exposure. Default 100.
@@ -26,7 +26,7 @@ pub struct LeagueDriveParams {
     pub n_labelled_frames: usize,
 }
 
-impl Default for LeagueDriveParams {
+impl Default for LeagueParams {
     fn default() -> Self {
         Self {
             n_frames: 280,
@@ -42,7 +42,7 @@ impl Default for LeagueDriveParams {
     }
 }
 
-impl LeagueDriveParams {
+impl LeagueParams {
     /// Validates the parameters for this camera; those of the robot are validated when it is created.
     pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimulationError> {
         check::count("frames", self.n_frames, 100_000)?;

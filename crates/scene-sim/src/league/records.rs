@@ -1,6 +1,6 @@
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
 
-use super::{LeagueDrive, LeagueDriveParams, LeagueFrame, LeaguePicture, N_COLORS};
+use super::{LeagueDrive, LeagueFrame, LeagueParams, LeaguePicture, N_COLORS};
 use crate::random::RandomStreams;
 use crate::{SimulationError, check};
 
@@ -9,7 +9,7 @@ const START_NS: u64 = 1_600_000_000_000_000_000;
 /// A colour counts as in view from this many pixels on.
 const IN_VIEW_PIXELS: usize = 40;
 
-impl LeagueDriveParams {
+impl LeagueParams {
     /// The log of a drive, in time order: camera info at the start; before each frame but the first an odometry increment; then, at the
     /// stamp of the frame, true pose, camera mount, true labels (of some frames) and picture.
     ///

@@ -2,9 +2,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::{
-    LampSetting, LeagueDrive, LeagueDriveParams, LeaguePicture, LeagueVenue, LinearRgb, N_COLORS, yuv,
-};
+use super::{LampSetting, LeagueDrive, LeagueParams, LeaguePicture, LeagueVenue, LinearRgb, N_COLORS, yuv};
 use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::{SimulationError, check};
 
@@ -91,11 +89,11 @@ impl TrainingVenuesParams {
     ) -> Result<TrainingVenue, SimulationError> {
         let streams = |seed| RandomStreams::new(ChaCha8Rng::seed_from_u64(seed));
         let venue = LeagueVenue::draw(streams(venue_seed).of(RandomStreamPurpose::Venue))?;
-        let params = LeagueDriveParams {
+        let params = LeagueParams {
             n_frames: self.n_images_per_light,
             period_ms: PERIOD_MS,
             lamp_settings: vec![(0, lighting)],
-            ..LeagueDriveParams::default()
+            ..LeagueParams::default()
         };
         let mut pooled = Pooled::default();
         let mut images = Vec::new();

@@ -1,5 +1,5 @@
 use super::{Scenario, ScenarioParams};
-use crate::league::{LampSetting, LeagueDriveParams};
+use crate::league::{LampSetting, LeagueParams};
 
 /// The hall of all four scenarios, selected from 24 because its dark light shows best how seen colours predict an unseen one. It is not
 /// representative; for random halls use [`Scenario::with_seed`].
@@ -13,22 +13,18 @@ pub(super) fn all() -> Vec<Scenario> {
         league("color_dark", 21, under(LampSetting::Dark)),
         league("color_bright", 22, under(LampSetting::Bright)),
         league("color_switching", 23, switching()),
-        league("color_kidnapped", 24, LeagueDriveParams { kidnap_frames, ..under(LampSetting::Bright) }),
+        league("color_kidnapped", 24, LeagueParams { kidnap_frames, ..under(LampSetting::Bright) }),
     ]
 }
 
-fn under(lighting: LampSetting) -> LeagueDriveParams {
-    LeagueDriveParams {
-        venue_seed: Some(HALL),
-        lamp_settings: vec![(0, lighting)],
-        ..LeagueDriveParams::default()
-    }
+fn under(lighting: LampSetting) -> LeagueParams {
+    LeagueParams { venue_seed: Some(HALL), lamp_settings: vec![(0, lighting)], ..LeagueParams::default() }
 }
 
 /// Lights go off and on again five times; every frame is labelled, for the classification rate over time.
-fn switching() -> LeagueDriveParams {
+fn switching() -> LeagueParams {
     use LampSetting::{Bright, Dark};
     let lights = vec![(0, Bright), (50, Dark), (95, Bright), (140, Dark), (170, Bright), (230, Dark)];
-    let params = LeagueDriveParams { lamp_settings: lights, ..under(Bright) };
-    LeagueDriveParams { n_labelled_frames: params.n_frames, ..params }
+    let params = LeagueParams { lamp_settings: lights, ..under(Bright) };
+    LeagueParams { n_labelled_frames: params.n_frames, ..params }
 }

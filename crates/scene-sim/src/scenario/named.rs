@@ -8,7 +8,7 @@ use super::store::{self, RetailStoreLapsParams};
 use super::{LaserDriveParams, PlanarDriveParams, catalogue};
 use crate::SimulationError;
 #[cfg(feature = "league")]
-use crate::league::LeagueDriveParams;
+use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
 use crate::random::RandomStreams;
 
@@ -43,7 +43,7 @@ pub enum ScenarioParams {
     Monobot(MonobotParams),
     /// A robot with a camera on the field of the four-legged league.
     #[cfg(feature = "league")]
-    League(Box<LeagueDriveParams>),
+    League(Box<LeagueParams>),
     /// A robot with an omnidirectional camera in a store.
     #[cfg(feature = "indoors")]
     StoreLaps(Box<RetailStoreLapsParams>),

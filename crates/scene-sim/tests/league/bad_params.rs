@@ -6,7 +6,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::league::{
     BodySwayParams, CameraParams, CameraSimulator, FieldWalkParams, GaitOdometryParams, LeagueDrive,
-    LeagueDriveParams, LeggedRobotParams, LinearRgb, RobotHeadParams, TrainingVenuesParams,
+    LeagueParams, LeggedRobotParams, LinearRgb, RobotHeadParams, TrainingVenuesParams,
 };
 use wayfix_scene_sim::random::NoiseShape;
 
@@ -30,10 +30,10 @@ fn cameras() {
             CameraParams { gain: bad, ..honest() },
             CameraParams { white_balance: LinearRgb::new(1.0, bad, 1.0), ..honest() },
             CameraParams { white_balance_drift_sigma: bad, ..honest() },
-            CameraParams { white_balance_drift_correlation_s: bad, ..honest() },
+            CameraParams { white_balance_correlation_s: bad, ..honest() },
             CameraParams { vignetting: LinearRgb::new(0.0, 0.0, bad), ..honest() },
             CameraParams { crosstalk: bad, ..honest() },
-            CameraParams { stray_light_share: bad, ..honest() },
+            CameraParams { stray_light: bad, ..honest() },
             CameraParams { full_well_electrons: bad, ..honest() },
             CameraParams { read_noise_sigma: bad, ..honest() },
             CameraParams { gamma: bad, ..honest() },
@@ -57,7 +57,7 @@ fn robots() {
     for bad in BAD {
         let walks = [
             FieldWalkParams { speed_mps: bad, ..default.walk },
-            FieldWalkParams { turn_rate_radps: bad, ..default.walk },
+            FieldWalkParams { turn_radps: bad, ..default.walk },
             FieldWalkParams { speed_time_constant_s: bad, ..default.walk },
             FieldWalkParams { mean_rest_s: bad, ..default.walk },
             FieldWalkParams { sideways_share: bad, ..default.walk },
@@ -87,15 +87,15 @@ fn robots() {
                 noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad },
                 ..default.odometry
             },
-            GaitOdometryParams { heading_drift_sigma_rad_per_m: bad, ..default.odometry },
-            GaitOdometryParams { heading_drift_correlation_s: bad, ..default.odometry },
+            GaitOdometryParams { drift_sigma_rad_per_m: bad, ..default.odometry },
+            GaitOdometryParams { drift_correlation_s: bad, ..default.odometry },
         ];
         let robots = walks.map(|walk| LeggedRobotParams { walk, ..default }).into_iter();
         let robots = robots.chain(sways.map(|sway| LeggedRobotParams { sway, ..default }));
         let robots = robots.chain(heads.map(|head| LeggedRobotParams { head, ..default }));
         let robots = robots.chain(odometries.map(|odometry| LeggedRobotParams { odometry, ..default }));
         for robot in robots {
-            let params = LeagueDriveParams { robot, n_frames: 1, ..LeagueDriveParams::default() };
+            let params = LeagueParams { robot, n_frames: 1, ..LeagueParams::default() };
             assert_refused(LeagueDrive::new(&params, streams(1)), bad);
         }
     }
@@ -103,29 +103,25 @@ fn robots() {
 
 #[test]
 fn drives() {
-    let default = LeagueDriveParams::default();
+    let default = LeagueParams::default();
     for start in
         [Pose2::new(f64::NAN, 0.0, 0.0), Pose2::new(0.0, f64::NAN, 0.0), Pose2::new(0.0, 0.0, f64::NAN)]
     {
         assert_refused(
-            LeagueDrive::new(&LeagueDriveParams { start: Some(start), ..default.clone() }, streams(1)),
+            LeagueDrive::new(&LeagueParams { start: Some(start), ..default.clone() }, streams(1)),
             f64::NAN,
         );
     }
+    assert_refused(LeagueDrive::new(&LeagueParams { period_ms: 12, ..default.clone() }, streams(1)), 12.0);
     assert_refused(
-        LeagueDrive::new(&LeagueDriveParams { period_ms: 12, ..default.clone() }, streams(1)),
-        12.0,
-    );
-    assert_refused(
-        LeagueDrive::new(&LeagueDriveParams { period_ms: 60_001, ..default.clone() }, streams(1)),
+        LeagueDrive::new(&LeagueParams { period_ms: 60_001, ..default.clone() }, streams(1)),
         60_001.0,
     );
-    let labels =
-        LeagueDriveParams { n_frames: 3, n_labelled_frames: 4, ..default.clone() }.simulate(streams(1));
+    let labels = LeagueParams { n_frames: 3, n_labelled_frames: 4, ..default.clone() }.simulate(streams(1));
     assert!(matches!(labels, Err(SimulationError::TooMany { limit: 3, got: 4, .. })));
-    let many = LeagueDrive::new(&LeagueDriveParams { n_frames: 100_001, ..default.clone() }, streams(1));
+    let many = LeagueDrive::new(&LeagueParams { n_frames: 100_001, ..default.clone() }, streams(1));
     assert!(matches!(many, Err(SimulationError::TooMany { got: 100_001, .. })));
-    let none = LeagueDriveParams { n_frames: 0, ..default };
+    let none = LeagueParams { n_frames: 0, ..default };
     assert_eq!(LeagueDrive::new(&none, streams(1)).expect("no frames are no fault").count(), 0);
 }
 

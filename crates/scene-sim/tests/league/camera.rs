@@ -43,7 +43,7 @@ fn gamma_crosstalk_and_stray_light_are_as_asked_for() {
     for (got, wanted) in mixed.rgb.iter().zip([204.0, 25.5, 25.5]) {
         assert!((f64::from(*got) - wanted).abs() <= ROUNDING, "{got}, wanted {wanted}");
     }
-    let hazy = of_blank(CameraParams { stray_light_share: 0.1, ..honest() }, LinearRgb::repeat(0.5));
+    let hazy = of_blank(CameraParams { stray_light: 0.1, ..honest() }, LinearRgb::repeat(0.5));
     assert!((f64::from(hazy.rgb[0]) - 255.0 * 0.55).abs() <= ROUNDING, "{}", hazy.rgb[0]);
 }
 

@@ -2,21 +2,18 @@
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::league::{
-    CameraParams, LampSetting, LeagueDrive, LeagueDriveParams, LeagueFrame, LeagueVenue,
+    CameraParams, LampSetting, LeagueDrive, LeagueFrame, LeagueParams, LeagueVenue,
 };
 use wayfix_scene_sim::random::RandomStreamPurpose;
 use wayfix_sensor_log::RecordData;
 
 use crate::support::{deviation, honest, mean, streams};
 
-fn frames(params: &LeagueDriveParams, seed: u64) -> Vec<LeagueFrame> {
+fn frames(params: &LeagueParams, seed: u64) -> Vec<LeagueFrame> {
     LeagueDrive::new(params, streams(seed)).expect("sound parameters").collect()
 }
 
-fn with_camera(
-    params: &LeagueDriveParams,
-    change: impl Fn(CameraParams) -> CameraParams,
-) -> Vec<LeagueFrame> {
+fn with_camera(params: &LeagueParams, change: impl Fn(CameraParams) -> CameraParams) -> Vec<LeagueFrame> {
     let mut streams = streams(1);
     let venue = LeagueVenue::draw(streams.of(RandomStreamPurpose::Venue)).expect("a venue");
     let venue = LeagueVenue { camera: change(venue.camera), ..venue };
@@ -25,21 +22,21 @@ fn with_camera(
 
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
-    let params = LeagueDriveParams { n_frames: 5, ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 5, ..LeagueParams::default() };
     assert_eq!(frames(&params, 1), frames(&params, 1));
     assert_ne!(frames(&params, 1), frames(&params, 2));
 }
 
 #[test]
 fn more_frames_begin_with_the_same() {
-    let params = |n_frames| LeagueDriveParams { n_frames, ..LeagueDriveParams::default() };
+    let params = |n_frames| LeagueParams { n_frames, ..LeagueParams::default() };
     assert_eq!(frames(&params(6), 1)[..4], frames(&params(4), 1));
 }
 
 #[test]
 fn the_light_changes_the_pictures_and_nothing_else() {
-    let bright = LeagueDriveParams { n_frames: 6, ..LeagueDriveParams::default() };
-    let switched = LeagueDriveParams {
+    let bright = LeagueParams { n_frames: 6, ..LeagueParams::default() };
+    let switched = LeagueParams {
         lamp_settings: vec![(2, LampSetting::Dark), (4, LampSetting::Bright)],
         ..bright.clone()
     };
@@ -59,13 +56,13 @@ fn the_light_changes_the_pictures_and_nothing_else() {
 
 #[test]
 fn the_white_balance_drifts_as_asked_for() {
-    let params = LeagueDriveParams { n_frames: 60, period_ms: 500, ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 60, period_ms: 500, ..LeagueParams::default() };
     let linear = |drift| {
         move |own: CameraParams| CameraParams {
             white_balance: own.white_balance,
             gain: 0.3 * own.gain, // far from saturation
             white_balance_drift_sigma: drift,
-            white_balance_drift_correlation_s: 0.1,
+            white_balance_correlation_s: 0.1,
             ..honest()
         }
     };
@@ -92,7 +89,7 @@ fn the_white_balance_drifts_as_asked_for() {
 
 #[test]
 fn sins_of_the_camera_leave_the_drive_as_it_was() {
-    let params = LeagueDriveParams { n_frames: 4, ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 4, ..LeagueParams::default() };
     let but_looks = |frames: Vec<LeagueFrame>| -> Vec<_> {
         frames.into_iter().map(|f| (f.pose, f.odometry, f.camera_pose, f.picture.labels)).collect()
     };
@@ -104,7 +101,7 @@ fn sins_of_the_camera_leave_the_drive_as_it_was() {
 
 #[test]
 fn kidnapped_robot_moves_without_odometry() {
-    let params = LeagueDriveParams { n_frames: 9, kidnap_frames: vec![3, 6], ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 9, kidnap_frames: vec![3, 6], ..LeagueParams::default() };
     for seed in 1..6 {
         let frames = frames(&params, seed);
         for (idx, pair) in frames.windows(2).enumerate() {
@@ -119,8 +116,7 @@ fn kidnapped_robot_moves_without_odometry() {
 #[test]
 fn odometry_comes_between_the_frames() {
     let start = Pose2::new(0.3, -0.2, 1.0);
-    let frames =
-        frames(&LeagueDriveParams { n_frames: 5, start: Some(start), ..LeagueDriveParams::default() }, 1);
+    let frames = frames(&LeagueParams { n_frames: 5, start: Some(start), ..LeagueParams::default() }, 1);
     assert_eq!(frames[0].odometry, None);
     assert!((frames[0].pose.translation - start.translation).norm() < 1e-12, "it rests at first");
     for pair in frames.windows(2) {
@@ -131,7 +127,7 @@ fn odometry_comes_between_the_frames() {
 
 #[test]
 fn the_log_has_its_records_in_order_and_labels_where_asked_for() {
-    let params = LeagueDriveParams { n_frames: 9, n_labelled_frames: 3, ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 9, n_labelled_frames: 3, ..LeagueParams::default() };
     let records = params.simulate(streams(1)).expect("sound parameters");
     assert!(records.is_sorted_by_key(|record| record.stamp));
     let kinds: Vec<&str> = records.iter().map(|record| record.data.kind()).collect();

@@ -89,7 +89,7 @@ fn odometry_is_off_by_a_scale_per_axis() {
         step_scale_range: [0.8, 0.8],
         turn_scale_range: [1.1, 1.1],
         noise: 0.0,
-        heading_drift_sigma_rad_per_m: 0.0,
+        drift_sigma_rad_per_m: 0.0,
         ..LeggedRobotParams::default().odometry
     };
     // Without turning, the parts of a way add up exactly; and turns always do.

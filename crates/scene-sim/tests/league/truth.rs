@@ -4,7 +4,7 @@ use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector2};
 use wayfix_scene_sim::league::{
-    LeagueDrive, LeagueDriveParams, LeaguePicture, LinearRgb, Material, N_COLORS, SceneSurface, SurfaceShape,
+    LeagueDrive, LeagueParams, LeaguePicture, LinearRgb, Material, N_COLORS, SceneSurface, SurfaceShape,
     field_map,
 };
 
@@ -81,7 +81,7 @@ fn unmapped_object_occludes_and_has_no_label() {
 
 #[test]
 fn every_color_comes_into_view_and_varies_over_the_field() {
-    let params = LeagueDriveParams { n_frames: 60, period_ms: 1000, ..LeagueDriveParams::default() };
+    let params = LeagueParams { n_frames: 60, period_ms: 1000, ..LeagueParams::default() };
     let mut brightness: Vec<Vec<f64>> = vec![vec![]; N_COLORS];
     for frame in LeagueDrive::new(&params, streams(1)).expect("sound parameters") {
         for (rgb, &label) in frame.picture.rgb.chunks_exact(3).zip(&frame.picture.labels) {

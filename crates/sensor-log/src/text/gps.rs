@@ -1,4 +1,4 @@
-use crate::{LogReadReport, RowProblem, RowProblemKind, Stamp, TruePosition};
+use crate::{ReadReport, RowProblem, RowProblemKind, Stamp, TruePosition};
 
 /// Limit of the two steps around a fix, m; if both are longer, the fix is a jump of the receiver.
 const MAX_STEP_M: f64 = 30.0;
@@ -9,7 +9,7 @@ const MAX_STEP_M: f64 = 30.0;
 pub(super) fn drop_jumps(
     file: &str,
     fixes: Vec<(u64, Stamp, TruePosition)>,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
 ) -> Vec<(Stamp, TruePosition)> {
     let steps: Vec<f64> = fixes.windows(2).map(|pair| step(&pair[0].2, &pair[1].2)).collect();
     let mut kept = Vec::with_capacity(fixes.len());
@@ -39,7 +39,7 @@ mod tests {
     /// x of the kept fixes, and the rows of the others.
     fn kept(xs: &[f64]) -> (Vec<f64>, Vec<u64>) {
         let fix = |(row, x): (usize, &f64)| (row as u64, Stamp::default(), TruePosition { x: *x, y: 0.0 });
-        let mut report = LogReadReport { rows_read: xs.len() as u64, ..Default::default() };
+        let mut report = ReadReport { rows_read: xs.len() as u64, ..Default::default() };
         let kept = drop_jumps("gps.csv", xs.iter().enumerate().map(fix).collect(), &mut report);
         assert_eq!(report.rows_read, kept.len() as u64);
         let rows = report.examples.iter().map(|problem| problem.row).collect();

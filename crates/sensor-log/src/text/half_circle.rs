@@ -1,5 +1,5 @@
 use super::row::RowError;
-use crate::{LaserScan, LogReadReport, RowProblemKind};
+use crate::{LaserScan, ReadReport, RowProblemKind};
 
 /// Range limit, m. SICK scanners return 81.91 m for no echo, older ones 51.16 m, and indoor ranges are shorter.
 const RANGE_MAX_M: f64 = 50.0;
@@ -32,7 +32,7 @@ pub(crate) fn is_half_circle(n_beams: usize) -> bool {
 }
 
 /// Warns of an assumed field of view: only the beam counts of a SICK scanner determine it.
-pub(crate) fn warn_of_assumed_field_of_view(n_beams: usize, report: &mut LogReadReport) {
+pub(crate) fn warn_of_assumed_field_of_view(n_beams: usize, report: &mut ReadReport) {
     if !is_half_circle(n_beams) {
         let text = format!(
             "the log does not state the field of view of scans with {n_beams} beams; 180° is assumed (a ROBOTLASER1 line states another)"
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn a_field_of_view_is_assumed_only_for_other_numbers_of_beams() {
-        let mut report = LogReadReport::default();
+        let mut report = ReadReport::default();
         [180, 181, 360, 361]
             .into_iter()
             .for_each(|n_beams| warn_of_assumed_field_of_view(n_beams, &mut report));

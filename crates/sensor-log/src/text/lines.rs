@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::RowError;
 use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
-use crate::{LogCompleteness, LogError, LogReadReport, RowProblem, RowProblemKind};
+use crate::{LogCompleteness, LogError, ReadReport, RowProblem, RowProblemKind};
 
 /// Maximum length of a row, in bytes. Rows of known formats are shorter: scanners of 1,440 beams print about 20 kB with remissions.
 const MAX_LINE_BYTES: usize = 64 << 10;
@@ -39,7 +39,7 @@ impl<R: BufRead> Lines<R> {
     /// Passes every row to `read_row`; rejected rows go into the report.
     pub(crate) fn for_each_row(
         self,
-        report: &mut LogReadReport,
+        report: &mut ReadReport,
         mut read_row: impl FnMut(&str) -> Result<(), RowError>,
     ) -> Result<(), LogError> {
         self.for_each_numbered_row(report, |_, row| read_row(row))
@@ -48,7 +48,7 @@ impl<R: BufRead> Lines<R> {
     /// Passes every row with its number to `read_row`; rejected rows go into the report.
     pub(crate) fn for_each_numbered_row(
         mut self,
-        report: &mut LogReadReport,
+        report: &mut ReadReport,
         mut read_row: impl FnMut(u64, &str) -> Result<(), RowError>,
     ) -> Result<(), LogError> {
         let file = self.file_name();
@@ -142,7 +142,7 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-impl LogReadReport {
+impl ReadReport {
     /// Counts a row as read, or with its problem.
     pub(super) fn count_row(&mut self, file: &str, row: u64, read: Result<(), RowError>) {
         match read {

@@ -12,8 +12,7 @@ use super::Lines;
 use super::row::{RowError, columns, id, number};
 use crate::formats::format::shortened;
 use crate::{
-    Detection, DetectionTarget, LogError, LogReadReport, Record, RecordData, RowProblemKind, Stamp,
-    TrueLandmark,
+    Detection, DetectionTarget, LogError, ReadReport, Record, RecordData, RowProblemKind, Stamp, TrueLandmark,
 };
 
 /// Time between two steps, nanoseconds.
@@ -23,7 +22,7 @@ pub(crate) fn looks_like(row: &str) -> bool {
     parse(row).is_ok()
 }
 
-pub(crate) fn read(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let mut steps = Steps::default();
     Lines::open(path)?.for_each_row(report, |row| {
         steps.push(parse(row)?);

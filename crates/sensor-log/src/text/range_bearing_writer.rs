@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
-use crate::{Detection, DetectionTarget, LogWriteReport, Record, RecordData, Stamp};
+use crate::{Detection, DetectionTarget, Record, RecordData, Stamp, WriteReport};
 
 /// Writes the records of one stamp as one step. The format has no stamps, so they are lost.
 ///
@@ -10,7 +10,7 @@ use crate::{Detection, DetectionTarget, LogWriteReport, Record, RecordData, Stam
 pub(crate) fn write(
     out: &mut impl Write,
     records: impl IntoIterator<Item = Record>,
-    report: &mut LogWriteReport,
+    report: &mut WriteReport,
 ) -> io::Result<()> {
     let mut step = Step::default();
     let mut step_stamp: Option<Stamp> = None;
@@ -71,7 +71,7 @@ impl Step {
     }
 }
 
-impl LogWriteReport {
+impl WriteReport {
     /// The format has no place for other robots and unknown codes.
     fn can_write(&mut self, detection: &Detection) -> bool {
         let what = match detection.target {

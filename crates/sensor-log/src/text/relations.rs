@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{columns, number, stamp};
-use crate::{LogError, LogReadReport, Stamp};
+use crate::{LogError, ReadReport, Stamp};
 
 /// True relative pose of two robot poses: the SLAM benchmark of Freiburg scores trajectories by these [Kümmerle et al. 2009].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +33,9 @@ pub struct PoseRelation {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read. Single bad lines are in the report.
-pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<PoseRelation>, LogReadReport), LogError> {
+pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<PoseRelation>, ReadReport), LogError> {
     let mut relations = Vec::new();
-    let mut report = LogReadReport::default();
+    let mut report = ReadReport::default();
     Lines::open(path.as_ref())?.for_each_row(&mut report, |row| {
         let [from, to, x, y, _, _, _, heading] = columns(row)?;
         let pose = Pose2::new(number(x)?, number(y)?, number(heading)?);

@@ -18,7 +18,7 @@ use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
 use crate::{
-    LaserScan, LogCompleteness, LogError, LogFormat, LogReadReport, PoseKind, Record, RecordData,
+    LaserScan, LogCompleteness, LogError, LogFormat, PoseKind, ReadReport, Record, RecordData,
     RowProblemKind, Stamp,
 };
 
@@ -26,11 +26,7 @@ use crate::{
 const MAX_BYTES: u64 = 256 << 20;
 
 /// All records, sorted by time.
-pub(crate) fn read(
-    path: &Path,
-    poses: PoseKind,
-    report: &mut LogReadReport,
-) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let mut text = read_text(path, report)?;
     replace_non_finite(&mut text);
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -56,7 +52,7 @@ pub(crate) fn read(
 }
 
 /// The readable part of the text of a file that may be compressed.
-fn read_text(path: &Path, report: &mut LogReadReport) -> Result<Vec<u8>, LogError> {
+fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> {
     let mut text = Vec::new();
     if let Err(error) = open_text(path)?.take(MAX_BYTES + 1).read_to_end(&mut text) {
         let end = end_of_damaged(path, &error, text.len() as u64);
@@ -101,7 +97,7 @@ fn replace_non_finite(text: &mut [u8]) {
 }
 
 /// Every entry that is whole, in the order of the file.
-fn entries(text: &[u8], report: &mut LogReadReport) -> Vec<(String, Value)> {
+fn entries(text: &[u8], report: &mut ReadReport) -> Vec<(String, Value)> {
     let mut entries = Vec::new();
     let mut json = Deserializer::from_slice(text);
     let read = Document(&mut entries).deserialize(&mut json).and_then(|()| json.end());

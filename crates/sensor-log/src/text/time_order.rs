@@ -3,7 +3,7 @@ use std::io::BufRead;
 use super::Lines;
 use super::clock_faults::{ClockFault, clock_faults};
 use super::row::RowError;
-use crate::{LogError, LogReadReport, RowProblem, RowProblemKind, Stamp};
+use crate::{LogError, ReadReport, RowProblem, RowProblemKind, Stamp};
 
 /// Content of a row of a text file, with its line and its time.
 pub(super) struct Timed<T> {
@@ -15,7 +15,7 @@ pub(super) struct Timed<T> {
 /// The rows that `read_row` accepts, [in time order](in_time_order); the others go into the report.
 pub(super) fn rows_in_time_order<R: BufRead, T>(
     lines: Lines<R>,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
     mut read_row: impl FnMut(&str) -> Result<(Stamp, T), RowError>,
 ) -> Result<Vec<Timed<T>>, LogError> {
     let file = lines.file_name();
@@ -30,7 +30,7 @@ pub(super) fn rows_in_time_order<R: BufRead, T>(
 
 /// The rows of a file in time order. Skips rows whose stamp is far from all others. If the clock is set back, the longest stretch is read. Sorts
 /// rows that are only out of order. All of it is reported.
-pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut LogReadReport) -> Vec<Timed<T>> {
+pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut ReadReport) -> Vec<Timed<T>> {
     let stamps: Vec<Stamp> = rows.iter().map(|row| row.stamp).collect();
     let mut faults = clock_faults(&stamps).into_iter().peekable();
     let mut stretches = vec![Vec::new()];
@@ -82,7 +82,7 @@ fn longest<T>(
     file: &str,
     mut stretches: Vec<Vec<Timed<T>>>,
     cuts: &[String],
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
 ) -> Vec<Timed<T>> {
     let n_rows = |stretch: &Vec<Timed<T>>| stretch.len();
     let Some(best) = (0..stretches.len()).rev().max_by_key(|index| n_rows(&stretches[*index])) else {
@@ -114,12 +114,12 @@ fn longest<T>(
 mod tests {
     use super::*;
 
-    fn sorted(seconds: &[f64]) -> (Vec<u64>, LogReadReport) {
+    fn sorted(seconds: &[f64]) -> (Vec<u64>, ReadReport) {
         let row = |(item, s): (usize, &f64)| {
             let stamp = Stamp::from_seconds(*s).unwrap();
             Timed { row: item as u64 + 1, stamp, item: item as u64 + 1 }
         };
-        let mut report = LogReadReport { rows_read: seconds.len() as u64, ..Default::default() };
+        let mut report = ReadReport { rows_read: seconds.len() as u64, ..Default::default() };
         let rows = in_time_order("rows.txt", seconds.iter().enumerate().map(row).collect(), &mut report);
         (rows.into_iter().map(|row| row.item).collect(), report)
     }

@@ -13,14 +13,14 @@ use super::row::{RowError, exactly, number, stamp};
 use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
-use crate::{LogError, LogReadReport, LogWriteReport, PoseKind, Record, RecordData, RowProblemKind};
+use crate::{LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind, WriteReport};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row, &ORDER, PoseKind::default()).is_ok()
 }
 
 /// The records, sorted by time.
-pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let order = order_of(path)?;
     let rows = rows_in_time_order(Lines::open(path)?, report, |text| {
         let Record { stamp, data } = parse(text, &order, kind)?;
@@ -79,7 +79,7 @@ fn parse(row: &str, order: &Order, kind: PoseKind) -> Result<Record, RowError> {
 pub(crate) fn write(
     out: &mut impl Write,
     records: impl IntoIterator<Item = Record>,
-    report: &mut LogWriteReport,
+    report: &mut WriteReport,
 ) -> io::Result<()> {
     for record in records {
         let (RecordData::TruePose(pose) | RecordData::EstimatedPose(pose)) = &record.data else {

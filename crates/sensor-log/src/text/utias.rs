@@ -14,8 +14,8 @@ use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
 use super::time_order::{Timed, rows_in_time_order};
 use crate::{
-    Detection, DetectionTarget, LogError, LogFormat, LogReadReport, Record, RecordData, RowProblemKind,
-    Stamp, TrueLandmark, Velocity,
+    Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, RowProblemKind, Stamp,
+    TrueLandmark, Velocity,
 };
 
 /// The set's numbering: subjects up to here are robots, the others landmarks.
@@ -57,7 +57,7 @@ pub(crate) fn choose_robot(folder: &Path, asked: Option<u32>) -> Result<u32, Log
 }
 
 /// All records of one robot. The two files of true positions may be missing.
-pub(crate) fn read(folder: &Path, robot: u32, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(folder: &Path, robot: u32, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let targets = read_barcodes(&folder.join("Barcodes.dat"), report)?;
     let file = |kind| folder.join(format!("Robot{robot}_{kind}.dat"));
 
@@ -82,10 +82,7 @@ fn optional(records: Result<Vec<Record>, LogError>) -> Result<Vec<Record>, LogEr
     }
 }
 
-fn read_barcodes(
-    path: &Path,
-    report: &mut LogReadReport,
-) -> Result<BTreeMap<u32, DetectionTarget>, LogError> {
+fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, DetectionTarget>, LogError> {
     let mut targets = BTreeMap::new();
     Lines::open(path)?.for_each_row(report, |row| {
         let [subject, barcode] = columns(row)?;
@@ -109,7 +106,7 @@ fn read_barcodes(
     Ok(targets)
 }
 
-fn read_true_poses(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_true_poses(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, x, y, heading]| {
         let pose = Pose2::new(number(x)?, number(y)?, number(heading)?);
         Ok((stamp(t)?, RecordData::TruePose(pose)))
@@ -117,7 +114,7 @@ fn read_true_poses(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record
     .map(to_records)
 }
 
-fn read_odometry(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, linear, angular]| {
         let velocity = Velocity { linear: number(linear)?, angular: number(angular)? };
         Ok((stamp(t)?, RecordData::Velocity(velocity)))
@@ -129,7 +126,7 @@ fn read_odometry(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>,
 fn read_detections(
     path: &Path,
     targets: &BTreeMap<u32, DetectionTarget>,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
 ) -> Result<Vec<Record>, LogError> {
     let detections = read_stamped(path, report, |[t, barcode, range, bearing]| {
         let (stamp, barcode) = (stamp(t)?, id(barcode)?);
@@ -146,7 +143,7 @@ fn read_detections(
         .collect())
 }
 
-fn read_landmarks(path: &Path, start: Stamp, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_landmarks(path: &Path, start: Stamp, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let mut landmarks = Vec::new();
     Lines::open(path)?.for_each_row(report, |row| {
         let [subject, x, y, _, _] = columns(row)?;
@@ -164,7 +161,7 @@ fn to_records(rows: Vec<Timed<RecordData>>) -> Vec<Record> {
 /// The rows of a file in time order.
 fn read_stamped<T, const N: usize>(
     path: &Path,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
     read_row: impl Fn([&str; N]) -> Result<(Stamp, T), RowError>,
 ) -> Result<Vec<Timed<T>>, LogError> {
     rows_in_time_order(Lines::open(path)?, report, |text| read_row(columns(text)?))

@@ -19,8 +19,8 @@ use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::format::shortened;
 use crate::{
-    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, LogReadReport, Record, RecordData,
-    Stamp, TruePosition,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, Stamp,
+    TruePosition,
 };
 
 const ODOMETRY: &str = "odometry.csv";
@@ -33,7 +33,7 @@ pub(crate) fn is_in(folder: &Path) -> bool {
 }
 
 /// All records, sorted by time.
-pub(crate) fn read(folder: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+pub(crate) fn read(folder: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     if folder.is_file() {
         let reason = format!("the set is a folder; give the one that holds {ODOMETRY} and {TREES}");
         return Err(LogError::NotThisFormat { path: folder.into(), format: LogFormat::VictoriaPark, reason });
@@ -46,7 +46,7 @@ pub(crate) fn read(folder: &Path, report: &mut LogReadReport) -> Result<Vec<Reco
     Ok(records)
 }
 
-fn read_odometry(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let header = ["t_s", "speed_mps", "steering_rad"];
     let rows = read_rows(path, header, report, |[t, speed, steering]| {
         let drive = AckermannDrive { wheel_speed: number(speed)?, steering: number(steering)? };
@@ -57,7 +57,7 @@ fn read_odometry(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>,
 }
 
 /// Rows of equal stamp form one scan, in file order.
-fn read_trees(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let take = |[t, range, bearing, diameter]: [&str; 4], target: DetectionTarget| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
@@ -97,7 +97,7 @@ fn is_labelled(path: &Path) -> Result<bool, LogError> {
     Ok(header.and_then(|row| row.text.ok()).is_some_and(|text| comma_columns::<5>(text).is_ok()))
 }
 
-fn read_fixes(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, LogError> {
+fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let read = read_rows(path, ["t_s", "x_m", "y_m"], report, |[t, x, y]| {
         Ok((stamp(t)?, TruePosition { x: number(x)?, y: number(y)? }))
     });
@@ -113,7 +113,7 @@ fn read_fixes(path: &Path, report: &mut LogReadReport) -> Result<Vec<Record>, Lo
 fn read_rows<T, const N: usize>(
     path: &Path,
     header: [&str; N],
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
     mut read_row: impl FnMut([&str; N]) -> Result<(Stamp, T), RowError>,
 ) -> Result<Vec<Timed<T>>, LogError> {
     let mut lines = Lines::open(path)?;

@@ -9,7 +9,7 @@ use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transf
 use crate::common::cdr::Encoder;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogError, LogFormat, LogOpenOptions, LogReadReport, Record, RecordData, RowProblemKind, open,
+    LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
 };
 
 const SECOND: u64 = 1_000_000_000;
@@ -55,7 +55,7 @@ fn put_file(folder: &Path, name: &str, bytes: &[u8]) {
     fs::write(folder.join(name), bytes).unwrap();
 }
 
-fn read_folder(folder: &Path) -> (Vec<Record>, LogReadReport) {
+fn read_folder(folder: &Path) -> (Vec<Record>, ReadReport) {
     open(folder, &LogOpenOptions::default()).unwrap().read_all()
 }
 
@@ -72,7 +72,7 @@ fn mounts(records: &[Record]) -> Vec<Pose2<f64>> {
     records.iter().filter_map(mount).collect()
 }
 
-fn warning<'a>(report: &'a LogReadReport, name: &str) -> Option<&'a str> {
+fn warning<'a>(report: &'a ReadReport, name: &str) -> Option<&'a str> {
     report.warnings.iter().find(|warning| warning.name == name).map(|warning| warning.text.as_str())
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::bag::{Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, scan, transforms};
 use wayfix_sensor_log::{
-    LogCompleteness, LogError, LogFormat, LogOpenOptions, LogReadReport, Record, RecordData, Stamp, Velocity,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, Stamp, Velocity,
     open, open_all, write,
 };
 
@@ -37,7 +37,7 @@ fn bag(steps: std::ops::Range<i32>, wants: impl Fn(&str) -> bool) -> Vec<u8> {
     bag.finish()
 }
 
-fn whole() -> (Vec<Record>, LogReadReport) {
+fn whole() -> (Vec<Record>, ReadReport) {
     crate::common::bag::read(&bag(1..STEPS, |_| true), &[]).unwrap()
 }
 

@@ -8,7 +8,7 @@ use std::io::Cursor;
 
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
-use wayfix_sensor_log::{LogError, LogOpenOptions, LogReadReport, Record, open};
+use wayfix_sensor_log::{LogError, LogOpenOptions, ReadReport, Record, open};
 
 use super::cdr::Encoder;
 
@@ -51,12 +51,12 @@ impl Bag {
         self.writer.into_inner().into_inner()
     }
 
-    pub(crate) fn read(self) -> (Vec<Record>, LogReadReport) {
+    pub(crate) fn read(self) -> (Vec<Record>, ReadReport) {
         read(&self.finish(), &[]).unwrap()
     }
 }
 
-pub(crate) fn read(bytes: &[u8], topics: &[&str]) -> Result<(Vec<Record>, LogReadReport), LogError> {
+pub(crate) fn read(bytes: &[u8], topics: &[&str]) -> Result<(Vec<Record>, ReadReport), LogError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bag.mcap");
     fs::write(&path, bytes).unwrap();

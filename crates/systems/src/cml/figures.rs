@@ -1,7 +1,7 @@
 use super::{CmlRun, CmlTask, CmlViewResult};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::EstimatedAndTruePose,
+    errors::PoseWithTruth,
     report::{Metric, ReportRun},
 };
 
@@ -56,16 +56,13 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
         "dead_reckoning_error_mean_m",
     ));
     if run.task != CmlTask::ConcurrentMapBuilding {
-        metrics.extend(mean(
-            samples.iter().filter_map(nearest_error),
-            "nearest_reference_position_error_mean_m",
-        ));
+        metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_reference_error_mean_m"));
     }
     metrics
 }
 
 /// Distance from the true position to the reference nearest in appearance, m: no filter, no odometry.
-fn nearest_error((frame, sample): &(&CmlViewResult, EstimatedAndTruePose)) -> Option<f64> {
+fn nearest_error((frame, sample): &(&CmlViewResult, PoseWithTruth)) -> Option<f64> {
     let (_, [x, y]) = frame.nearest?;
     Some((x - sample.truth.x()).hypot(y - sample.truth.y()))
 }

@@ -9,10 +9,8 @@ use wayfix_sensor_log::{Record, RecordData};
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
 
-use crate::system::{
-    ODOMETRY, RunStepSnapshot, System, TrueStartPose, check_overlap, drive, without_odometry_delay,
-};
-use wayfix_evaluation::errors::{EstimatedAndTruePose, ReferencePath};
+use crate::system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +61,7 @@ pub fn run(
     start: CmlStartPose,
     params: &CmlParams,
     seed: u64,
-    observe: impl FnMut(RunStepSnapshot<'_, CmlSystem>),
+    observe: impl FnMut(RunStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
     if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
@@ -126,10 +124,10 @@ fn begin(start: CmlStartPose, sigmas: &PoseSigmas, seed: u64) -> Result<StartPos
 
 impl CmlRun {
     /// Localized views with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&CmlViewResult, EstimatedAndTruePose)> {
+    pub fn samples(&self) -> Vec<(&CmlViewResult, PoseWithTruth)> {
         let sample = |frame: &CmlViewResult| {
             let (pose, truth) = (frame.pose.as_ref()?, self.truth.at(frame.stamp)?);
-            Some(EstimatedAndTruePose { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
+            Some(PoseWithTruth { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
         };
         let frames = self.system.frames().iter();
         frames.filter_map(|frame| Some((frame, sample(frame)?))).collect()

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 use super::{ClassificationCounts, ColorRun, rate_of};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::{EstimatedAndTruePose, MeanInterval, trajectory_errors},
+    errors::{MeanInterval, PoseWithTruth, trajectory_errors},
     report::{Metric, ReportRun},
 };
 
@@ -31,11 +31,11 @@ pub fn summarize(run: &mut ColorRun) -> ReportRun {
 }
 
 fn localization(run: &ColorRun) -> Vec<Metric> {
-    let samples: Vec<EstimatedAndTruePose> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
     let Some(errors) = trajectory_errors(&samples) else { return Vec::new() };
     let n = samples.len() as f64;
-    let positions: Vec<f64> = samples.iter().map(EstimatedAndTruePose::position_error).collect();
-    let heading = samples.iter().map(EstimatedAndTruePose::heading_error).sum::<f64>() / n;
+    let positions: Vec<f64> = samples.iter().map(PoseWithTruth::position_error).collect();
+    let heading = samples.iter().map(PoseWithTruth::heading_error).sum::<f64>() / n;
     let mut metrics = vec![
         Metric::new("position_mean_m", positions.iter().sum::<f64>() / n, "m"),
         Metric::new("position_error_max_m", positions.iter().copied().fold(0.0, f64::max), "m"),

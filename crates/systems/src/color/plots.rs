@@ -5,7 +5,7 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData};
 
 use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
-    errors::EstimatedAndTruePose,
+    errors::PoseWithTruth,
     plot::{
         CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError,
         PlotSeries, PoseErrorPlot, PoseErrorSample, SvgPlot,
@@ -103,7 +103,7 @@ fn paint(label: u8) -> [u8; 3] {
     if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
 }
 
-fn path(run: &ColorRun, samples: &[(&ColorFrameResult, EstimatedAndTruePose)]) -> MapPlot {
+fn path(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> MapPlot {
     let frames = run.system.frames();
     MapPlot {
         title: "Path on the field".to_owned(),
@@ -115,8 +115,8 @@ fn path(run: &ColorRun, samples: &[(&ColorFrameResult, EstimatedAndTruePose)]) -
     }
 }
 
-fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, EstimatedAndTruePose)]) -> PoseErrorPlot {
-    let error_sample = |(frame, sample): &(&ColorFrameResult, EstimatedAndTruePose)| {
+fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> PoseErrorPlot {
+    let error_sample = |(frame, sample): &(&ColorFrameResult, PoseWithTruth)| {
         let sigma = sample.covariance.diagonal().map(f64::sqrt);
         PoseErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
     };

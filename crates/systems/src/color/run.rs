@@ -13,9 +13,9 @@ use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose};
 use crate::system::TrueStartPose;
 use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
-    system::{ODOMETRY, RunStepSnapshot, System, check_overlap, drive, without_odometry_delay},
+    system::{ODOMETRY, RunStep, System, check_overlap, drive, without_odometry_delay},
 };
-use wayfix_evaluation::errors::{EstimatedAndTruePose, ReferencePath};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
@@ -39,7 +39,7 @@ pub fn run(
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,
-    observe: impl FnMut(RunStepSnapshot<'_, ColorSystem>),
+    observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
     let Some(first_image) = records.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
@@ -85,14 +85,10 @@ fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64
 
 impl ColorRun {
     /// Frames with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&ColorFrameResult, EstimatedAndTruePose)> {
+    pub fn samples(&self) -> Vec<(&ColorFrameResult, PoseWithTruth)> {
         let sample = |frame: &ColorFrameResult| {
             let truth = self.truth.at(frame.stamp)?;
-            Some(EstimatedAndTruePose {
-                estimate: *frame.pose.mean(),
-                covariance: *frame.pose.covariance(),
-                truth,
-            })
+            Some(PoseWithTruth { estimate: *frame.pose.mean(), covariance: *frame.pose.covariance(), truth })
         };
         self.system.frames().iter().filter_map(|frame| Some((frame, sample(frame)?))).collect()
     }

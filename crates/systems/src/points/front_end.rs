@@ -13,7 +13,7 @@ use super::{
     sequential_motion::SequentialMotion, state::PointFrontEndState, unknown_motion::UnknownMotion,
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, SlamEstimator, SlamFrontEnd, SlamSystem, nis},
+    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -54,7 +54,7 @@ impl PointSystem {
         let (confirmation, merging) = match rule {
             AssociationRule::Known => (params.filter.confirmation, None),
             AssociationRule::Nn | AssociationRule::Jcbb => {
-                (params.unlabelled_landmark_confirmation, params.filter.merging)
+                (params.unlabelled_confirmation, params.filter.merging)
             }
         };
         let filter_params = SlamParams { confirmation, merging, ..params.filter };
@@ -86,7 +86,7 @@ impl PointSystem {
 
 type Points = SlamEstimator<PointSensor>;
 
-impl SlamFrontEnd for PointSlamFrontEnd {
+impl FrontEnd for PointSlamFrontEnd {
     type Model = PointSensor;
     type State = PointFrontEndState;
 

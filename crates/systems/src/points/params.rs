@@ -52,7 +52,7 @@ pub struct PointSlamParams {
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
-    pub unlabelled_landmark_confirmation: LandmarkConfirmationParams,
+    pub unlabelled_confirmation: LandmarkConfirmationParams,
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
@@ -149,7 +149,7 @@ impl PointSlamParams {
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
-                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 3,
                     max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()
@@ -200,7 +200,7 @@ impl PointSlamParams {
                     new_landmark_nis: 60.0,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
                     max_consecutive_misses: Some(5),
                     min_detection_rate: 0.4,
@@ -249,7 +249,7 @@ impl PointSlamParams {
                     one_detection_per_landmark: true,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_landmark_confirmation: LandmarkConfirmationParams {
+                unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
                     max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()

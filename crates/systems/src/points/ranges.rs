@@ -37,7 +37,7 @@ impl PointSlamParams {
     /// [`SlamError::Parameter`] for the first that is not.
     pub fn validated(self) -> Result<Self, SlamError> {
         let Self { robot, mounting, vehicle, sensor, velocity_noise, increment_noise, filter, .. } = &self;
-        let unlabelled_landmark_confirmation = &self.unlabelled_landmark_confirmation;
+        let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
         let correlated_noise = sensor.correlated_noise.unwrap_or_default();
@@ -85,15 +85,11 @@ impl PointSlamParams {
             number!(velocity_noise.standing_factor, NOT_NEGATIVE),
             number!(velocity_noise.speed_loss_in_turns, NOT_NEGATIVE),
             number!(filter.confirmation.min_detection_rate, SHARE),
-            number!(unlabelled_landmark_confirmation.min_detection_rate, SHARE),
+            number!(unlabelled_confirmation.min_detection_rate, SHARE),
             ("filter.confirmation.min_detections", times_seen(&filter.confirmation), TIMES_SEEN),
             number!(filter.confirmation.tentative_restart_nis, THRESHOLD),
-            (
-                "unlabelled_landmark_confirmation.min_detections",
-                times_seen(unlabelled_landmark_confirmation),
-                TIMES_SEEN,
-            ),
-            number!(unlabelled_landmark_confirmation.tentative_restart_nis, THRESHOLD),
+            ("unlabelled_confirmation.min_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
+            number!(unlabelled_confirmation.tentative_restart_nis, THRESHOLD),
         ]
         .into_iter()
         .chain(increment_numbers(increment_noise).map(|(name, value)| (name, value, NOT_NEGATIVE)))

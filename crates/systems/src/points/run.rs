@@ -10,7 +10,7 @@ use wayfix_slam_ekf::LandmarkId;
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::{
     slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_start},
-    system::{EventCounts, ODOMETRY, RunStepSnapshot, System, TrueStartPose, check_overlap},
+    system::{EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap},
 };
 
 /// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
@@ -26,7 +26,7 @@ pub type PointRun = SlamRun<PointSlamFrontEnd, BTreeMap<u32, Vector2<f64>>>;
 pub fn run(
     records: &[Record],
     params: &PointSlamParams,
-    observe: impl FnMut(RunStepSnapshot<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let Some(start_stamp) = start_stamp(records) else {
         bail!(
@@ -65,7 +65,7 @@ pub fn run_on(
     saved: SavedPointMap,
     records: &[Record],
     params: &PointSlamParams,
-    observe: impl FnMut(RunStepSnapshot<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let association = saved.association;
     let system = PointSystem::resume(params.clone(), saved)?;
@@ -77,7 +77,7 @@ fn drive_through(
     system: PointSystem,
     truth: ReferencePath,
     records: &[Record],
-    observe: impl FnMut(RunStepSnapshot<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let true_positions = TruePositions::from_records(records);
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();

@@ -5,7 +5,7 @@ use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem};
 use crate::{
-    slam::{SavedMapError, SlamFrontEndState, SlamState, check_association},
+    slam::{FrontEndState, SavedMapError, SlamState, check_association},
     system::{MotionStatistics, check_velocity},
 };
 
@@ -25,7 +25,7 @@ pub struct PointFrontEndState {
     pub motion: MotionStatistics,
 }
 
-impl SlamFrontEndState for PointFrontEndState {
+impl FrontEndState for PointFrontEndState {
     const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
     const LANDMARK: (&str, usize) = ("point in the plane", 2);
 }

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{SlamFrontEnd, SlamSystem};
+use super::{FrontEnd, SlamSystem};
 use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Path and map beside the records, for viewers.
@@ -27,7 +27,7 @@ impl<F> Default for SlamDrawingState<F> {
 /// The map and the whole path are written with every so many estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 
-impl<F: SlamFrontEnd> system::EstimateDrawer for SlamDrawingState<F>
+impl<F: FrontEnd> system::EstimateDrawer for SlamDrawingState<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {

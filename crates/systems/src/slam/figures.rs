@@ -1,20 +1,20 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::{EstimatedAndTruePose, trajectory_errors},
+    errors::{PoseWithTruth, trajectory_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_slam_ekf::{
     LandmarkDim, MeasurementDim, RobotDim, SlamAlloc, observability::ObservabilityRecorder,
 };
 
-use super::{SlamFrontEnd, SlamRun, StampedEstimate};
+use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// Events that count a refused observation or record.
 const REJECTIONS: [&str; 4] =
     ["observation_rejected_by_gate", "observation_duplicate", "observation_unusable", "record_refused"];
 
 /// The figures and events of a run, ready for the report; `of_map` are the figures of the kind of landmark.
-pub(crate) fn summary<F: SlamFrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun
+pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -32,12 +32,12 @@ where
 }
 
 /// Errors of the path and of odometry alone. Names as in the contract of `docs/architecture.md`.
-fn path_metrics<F: SlamFrontEnd, T>(run: &SlamRun<F, T>) -> Vec<Metric>
+fn path_metrics<F: FrontEnd, T>(run: &SlamRun<F, T>) -> Vec<Metric>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     let samples = run.samples();
-    let errors_of = |samples: Vec<EstimatedAndTruePose>| trajectory_errors(&samples);
+    let errors_of = |samples: Vec<PoseWithTruth>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
     if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
@@ -46,7 +46,7 @@ where
         let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
-    let reckoned = |(at, sample): &(StampedEstimate, EstimatedAndTruePose)| EstimatedAndTruePose {
+    let reckoned = |(at, sample): &(StampedEstimate, PoseWithTruth)| PoseWithTruth {
         estimate: at.dead_reckoning,
         ..*sample
     };

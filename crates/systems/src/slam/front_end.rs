@@ -7,14 +7,14 @@ use super::SlamEstimator;
 use crate::system::EstimateWriter;
 
 /// What turns the records of a log into predictions and updates of EKF-SLAM, for one kind of landmark.
-pub trait SlamFrontEnd
+pub trait FrontEnd
 where
     DefaultAllocator: SlamAlloc<RobotDim<Self::Model>, LandmarkDim<Self::Model>, MeasurementDim<Self::Model>>,
 {
     /// Robot, landmark and measurement.
     type Model: LandmarkModel + Clone;
     /// What it keeps between two records.
-    type State: SlamFrontEndState;
+    type State: FrontEndState;
 
     /// Takes a record: predicts and updates.
     ///
@@ -50,7 +50,7 @@ where
 }
 
 /// What a front end saves, and which kind of map it belongs to.
-pub trait SlamFrontEndState: Serialize + DeserializeOwned {
+pub trait FrontEndState: Serialize + DeserializeOwned {
     /// The robot's state in words, and its dimension.
     const ROBOT: (&str, usize);
     /// The same of a landmark.

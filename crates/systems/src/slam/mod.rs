@@ -1,6 +1,6 @@
 //! EKF-SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 //!
-//! [`SlamSystem`] is generic over a [`SlamFrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
+//! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
 //! Filter, association, observability, saved maps, figures and pictures are the same for both.
 
 mod association;
@@ -23,7 +23,7 @@ pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 use event_name::event_name;
 pub(crate) use figures::summary;
-pub use front_end::{SlamFrontEnd, SlamFrontEndState};
+pub use front_end::{FrontEnd, FrontEndState};
 pub(crate) use increment_numbers::increment_numbers;
 pub(crate) use plots::plots_with;
 pub use run::SlamRun;

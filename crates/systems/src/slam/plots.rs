@@ -1,6 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::EstimatedAndTruePose,
+    errors::PoseWithTruth,
     plot::{
         AxisScale, ConsistencyPlot, MapPlot, PlotError, PoseErrorPlot, PoseErrorSample, StepTimesPlot,
         SvgPlot,
@@ -9,7 +9,7 @@ use wayfix_evaluation::{
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{SlamFrontEnd, SlamRun, StampedEstimate};
+use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// x, y, θ.
 const POSE_DIMENSION: usize = 3;
@@ -17,10 +17,7 @@ const POSE_DIMENSION: usize = 3;
 const WINDOW: usize = 100;
 
 /// Path and `map`, errors with their 3σ bands and NEES where there is truth, and step times.
-pub(crate) fn plots_with<F: SlamFrontEnd, T>(
-    run: &SlamRun<F, T>,
-    map: MapPlot,
-) -> Result<Vec<SvgPlot>, PlotError>
+pub(crate) fn plots_with<F: FrontEnd, T>(run: &SlamRun<F, T>, map: MapPlot) -> Result<Vec<SvgPlot>, PlotError>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -47,8 +44,8 @@ where
     Ok(plots)
 }
 
-fn errors(samples: &[(StampedEstimate, EstimatedAndTruePose)]) -> PoseErrorPlot {
-    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, EstimatedAndTruePose)| {
+fn errors(samples: &[(StampedEstimate, PoseWithTruth)]) -> PoseErrorPlot {
+    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         let sigma = stamped_estimate.covariance.diagonal().map(f64::sqrt);
         PoseErrorSample {
             t: seconds(samples, stamped_estimate),
@@ -62,8 +59,8 @@ fn errors(samples: &[(StampedEstimate, EstimatedAndTruePose)]) -> PoseErrorPlot 
     }
 }
 
-fn consistency(samples: &[(StampedEstimate, EstimatedAndTruePose)]) -> Option<ConsistencyPlot> {
-    let nees = |(stamped_estimate, sample): &(StampedEstimate, EstimatedAndTruePose)| {
+fn consistency(samples: &[(StampedEstimate, PoseWithTruth)]) -> Option<ConsistencyPlot> {
+    let nees = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         Some((seconds(samples, stamped_estimate), sample.nees()?))
     };
     let samples: Vec<_> = samples.iter().filter_map(nees).collect();
@@ -93,6 +90,6 @@ fn times(stamped_estimates: &[StampedEstimate]) -> StepTimesPlot {
 }
 
 /// Time since the first sample.
-fn seconds(samples: &[(StampedEstimate, EstimatedAndTruePose)], stamped_estimate: &StampedEstimate) -> f64 {
+fn seconds(samples: &[(StampedEstimate, PoseWithTruth)], stamped_estimate: &StampedEstimate) -> f64 {
     samples.first().map_or(0.0, |(first, _)| stamped_estimate.stamp.seconds_since(first.stamp))
 }

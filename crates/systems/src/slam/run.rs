@@ -1,13 +1,13 @@
 use nalgebra::{DefaultAllocator, Vector2};
-use wayfix_evaluation::errors::{EstimatedAndTruePose, ReferencePath, TruePositions};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{SlamFrontEnd, SlamSystem, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
-use crate::system::{EventCounts, RunStepSnapshot, System, drive};
+use super::{FrontEnd, SlamSystem, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
+use crate::system::{EventCounts, RunStep, System, drive};
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
-pub struct SlamRun<F: SlamFrontEnd, T>
+pub struct SlamRun<F: FrontEnd, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -23,7 +23,7 @@ where
     pub evaluated_until: Stamp,
 }
 
-impl<F: SlamFrontEnd, T> SlamRun<F, T>
+impl<F: FrontEnd, T> SlamRun<F, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -31,7 +31,7 @@ where
     pub(crate) fn through(
         mut self,
         records: &[Record],
-        observe: impl FnMut(RunStepSnapshot<'_, SlamSystem<F>>),
+        observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
     ) -> Self {
         drive(&mut self.system, records, observe);
         let estimates = self.system.stamped_estimates();
@@ -44,7 +44,7 @@ where
     }
 
     /// Estimates with their true poses.
-    pub fn samples(&self) -> Vec<(StampedEstimate, EstimatedAndTruePose)> {
+    pub fn samples(&self) -> Vec<(StampedEstimate, PoseWithTruth)> {
         let sample = |estimate: &StampedEstimate| {
             let StampedEstimate { stamp, pose, covariance, .. } = estimate;
             Some((*estimate, self.truth.sample(*stamp, *pose, covariance)?))

@@ -6,11 +6,11 @@ use wayfix_slam_ekf::{
     SlamSnapshot, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, SavedMapError, SlamEstimator, SlamFrontEnd, SlamState, StampedEstimate};
+use super::{AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate};
 use crate::system::{EventCounts, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
-pub struct SlamSystem<F: SlamFrontEnd>
+pub struct SlamSystem<F: FrontEnd>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -27,12 +27,12 @@ pub(crate) const FIRST_ANCHOR: u32 = 1 << 31;
 
 /// The [`SlamState`] of a front end.
 pub type StateOf<F> = SlamState<
-    <<F as SlamFrontEnd>::Model as LandmarkModel>::Robot,
-    <<F as SlamFrontEnd>::Model as LandmarkModel>::Landmark,
-    <F as SlamFrontEnd>::State,
+    <<F as FrontEnd>::Model as LandmarkModel>::Robot,
+    <<F as FrontEnd>::Model as LandmarkModel>::Landmark,
+    <F as FrontEnd>::State,
 >;
 
-impl<F: SlamFrontEnd> SlamSystem<F>
+impl<F: FrontEnd> SlamSystem<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -98,7 +98,7 @@ where
     }
 }
 
-impl<F: SlamFrontEnd> System for SlamSystem<F>
+impl<F: FrontEnd> System for SlamSystem<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {

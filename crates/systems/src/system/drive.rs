@@ -6,7 +6,7 @@ use super::System;
 
 /// State shown to an observer of [`drive`] after each record.
 #[derive(Clone, Copy, Debug)]
-pub struct RunStepSnapshot<'a, S> {
+pub struct RunStep<'a, S> {
     /// The system after the record.
     pub system: &'a S,
     /// The record, with the stamp at which the system took it.
@@ -21,7 +21,7 @@ pub struct RunStepSnapshot<'a, S> {
 pub fn drive<S: System, R: Borrow<Record>>(
     system: &mut S,
     records: impl IntoIterator<Item = R>,
-    mut observe: impl FnMut(RunStepSnapshot<'_, S>),
+    mut observe: impl FnMut(RunStep<'_, S>),
 ) {
     let mut latest = Stamp::default();
     let mut records = records.into_iter().enumerate().peekable();
@@ -37,7 +37,7 @@ pub fn drive<S: System, R: Borrow<Record>>(
         if let Err(reason) = taken {
             system.events().refuse("record_refused", reason);
         }
-        observe(RunStepSnapshot { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
+        observe(RunStep { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
     }
     if let Err(reason) = system.finish() {
         system.events().refuse("record_refused", reason);

@@ -14,7 +14,7 @@ mod plausible_increment;
 mod robot_drawing;
 mod stopwatch;
 
-pub use drive::{RunStepSnapshot, drive};
+pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};

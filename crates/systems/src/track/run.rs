@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{Log, Record, RecordData, RowProblemKind};
 
 use super::{TrackRunHistory, TrackSystem, TrackSystemError};
-use crate::system::{RunStepSnapshot, System, drive};
+use crate::system::{RunStep, System, drive};
 
 /// Results of a tracker on a log.
 pub struct TrackRun {
@@ -22,7 +22,7 @@ pub fn run(
 ) -> Result<TrackRun, TrackSystemError> {
     let mut run_history = TrackRunHistory::default();
     let mut kept = Ok(());
-    drive(&mut system, log.by_ref(), |RunStepSnapshot { system, record, .. }| {
+    drive(&mut system, log.by_ref(), |RunStep { system, record, .. }| {
         // Only image records change the frame.
         if let (Ok(()), RecordData::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = run_history.observe(frame);

@@ -17,7 +17,7 @@ use super::{
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, SlamEstimator, SlamFrontEnd, SlamSystem, nis},
+    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
 };
 
@@ -78,10 +78,7 @@ impl WallSystem {
         let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
         let front_end = WallSlamFrontEnd {
             extractor: LineExtractor::new(params.line_extraction)?,
-            matcher: params
-                .match_scans_to_keyframe
-                .then(|| ScanMatcher::new(params.scan_match))
-                .transpose()?,
+            matcher: params.match_scans.then(|| ScanMatcher::new(params.scan_match)).transpose()?,
             last_keyframe: None,
             relative_motion: RelativeMotion::default(),
             params,
@@ -106,7 +103,7 @@ impl WallSystem {
 /// The estimator of this front end.
 pub(super) type Walls = SlamEstimator<WallModel>;
 
-impl SlamFrontEnd for WallSlamFrontEnd {
+impl FrontEnd for WallSlamFrontEnd {
     type Model = WallModel;
     type State = WallFrontEndState;
 

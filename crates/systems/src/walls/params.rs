@@ -43,7 +43,7 @@ pub struct WallSlamParams {
     /// What odometry and scans disagree by.
     pub odometry_noise_per_scan: OdometryNoisePerScan,
     /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
-    pub match_scans_to_keyframe: bool,
+    pub match_scans: bool,
     /// How that is done.
     pub scan_match: ScanMatchParams,
     /// How walls are found in a scan.
@@ -115,7 +115,7 @@ impl Default for WallSlamParams {
             n_anchors: 0,
             keyframes: KeyframeThreshold::default(),
             odometry_noise_per_scan: OdometryNoisePerScan::default(),
-            match_scans_to_keyframe: true,
+            match_scans: true,
             scan_match: ScanMatchParams::default(),
             line_extraction: LineExtractionParams::default(),
             min_wall_length: 1.0,

@@ -1,6 +1,6 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_evaluation::errors::{EstimatedAndTruePose, ReferencePath, TruePositions};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
@@ -9,9 +9,7 @@ use crate::{
     slam::{
         AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_reference, warn_of_start,
     },
-    system::{
-        ODOMETRY, RunStepSnapshot, System, TrueStartPose, check_overlap, warn_of_lag, without_odometry_delay,
-    },
+    system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_lag, without_odometry_delay},
 };
 
 /// A log of scans that went through EKF-SLAM with walls.
@@ -27,7 +25,7 @@ pub type WallRun = SlamRun<WallSlamFrontEnd, Vec<TrueWall>>;
 pub fn run(
     records: &[Record],
     params: &WallSlamParams,
-    observe: impl FnMut(RunStepSnapshot<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let first = |is: fn(&RecordData) -> bool| records.iter().find(|record| is(&record.data));
     let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
@@ -71,7 +69,7 @@ pub fn run_on(
     records: &[Record],
     params: &WallSlamParams,
     association: Option<AssociationRule>,
-    observe: impl FnMut(RunStepSnapshot<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
     let track = ReferencePath::from_records_or_estimates(records);
@@ -83,7 +81,7 @@ fn drive_through(
     truth: ReferencePath,
     true_map: Vec<TrueWall>,
     records: &[Record],
-    observe: impl FnMut(RunStepSnapshot<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let delay = system.front_end.params.odometry_delay;
     let records = without_odometry_delay(records, delay);
@@ -100,7 +98,7 @@ fn drive_through(
     let seen_turns = run.system.seen_turns().to_vec();
     warn_of_lag(run.events(), &dead_reckoning, &seen_turns, delay);
     let samples = run.samples();
-    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, EstimatedAndTruePose)| {
+    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
     };
     if !samples.is_empty() && samples.iter().all(is_odometry) {

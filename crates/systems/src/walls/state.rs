@@ -10,7 +10,7 @@ use super::{
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan},
 };
-use crate::slam::{AssociationRule, SavedMapError, SlamFrontEndState, SlamState, check_association};
+use crate::slam::{AssociationRule, FrontEndState, SavedMapError, SlamState, check_association};
 
 /// A map of walls.
 pub type SavedWallMap = SlamState<PoseWithHeadingDrift, Wall, WallFrontEndState>;
@@ -51,7 +51,7 @@ pub struct SavedScan {
     pub beam_step: Option<Pose2<f64>>,
 }
 
-impl SlamFrontEndState for WallFrontEndState {
+impl FrontEndState for WallFrontEndState {
     const ROBOT: (&str, usize) = ("planar pose with heading drift", 4);
     const LANDMARK: (&str, usize) = ("wall in the plane", 2);
 }

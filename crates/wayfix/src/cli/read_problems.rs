@@ -1,10 +1,10 @@
-use wayfix_sensor_log::{Log, LogCompleteness, LogReadReport, LogWarning, Record};
+use wayfix_sensor_log::{Log, LogCompleteness, LogWarning, ReadReport, Record};
 
 use wayfix_evaluation::terminal::print_message;
 use wayfix_systems::system::EventCounts;
 
 /// Reads all records of a log; prints read problems and assumptions.
-pub(super) fn read_all(log: Log) -> (Vec<Record>, LogReadReport) {
+pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
     let (records, read) = log.read_all();
     if !read.is_clean() {
         print_message(&read);
@@ -13,7 +13,7 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, LogReadReport) {
 }
 
 /// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.
-pub(super) fn add_read_problems(events: &mut EventCounts, read: &LogReadReport) -> Vec<String> {
+pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> Vec<String> {
     for refusal in events.refusals() {
         print_message(format!("refused {refusal}"));
     }

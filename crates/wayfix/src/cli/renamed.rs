@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 210] = [
+const RENAMED: [(&str, &str); 208] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -105,7 +105,6 @@ const RENAMED: [(&str, &str); 210] = [
     ("made_odometry", "synthetic_odometry"),
     ("map", "covariance_update"),
     ("match_limit_fraction", "max_match_difference_share"),
-    ("match_scans", "match_scans_to_keyframe"),
     ("match_share", "max_match_difference_share"),
     ("max_colors", "max_color_points"),
     ("max_count", "max_effective_observation_count"),
@@ -200,7 +199,6 @@ const RENAMED: [(&str, &str); 210] = [
     ("unimodal_weight", "unimodal_min_weight"),
     ("unknown_speed", "speed_sigma_without_odometry"),
     ("unknown_turning", "turn_rate_sigma_without_odometry"),
-    ("unlabelled_confirmation", "unlabelled_landmark_confirmation"),
     ("unseen", "unseen_colors"),
     ("velocity", "velocity_noise"),
     ("velocity_hold", "velocity_timeout"),

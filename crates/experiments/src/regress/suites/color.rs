@@ -11,7 +11,7 @@ use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors},
-    system::{RunStepSnapshot, System},
+    system::{RunStep, System},
 };
 
 /// Settings of a run.
@@ -162,7 +162,7 @@ fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams
         params,
         None,
         job.options.seed,
-        |RunStepSnapshot { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             estimates.observe(record, system);
             particles.observe(system);
         },

@@ -8,7 +8,7 @@ use crate::simplification::simplification;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     lines::{self, LineEstimateRecorder, LineExtractionSystem},
-    system::{RunStepSnapshot, System, drive},
+    system::{RunStep, System, drive},
 };
 
 /// Settings of a run.
@@ -37,7 +37,7 @@ fn walls(job: &PlannedJob<'_>, params: LineExtractionParams) -> Result<ReportRun
     let mut walls = LineEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let mut system = LineExtractionSystem::new(params)?;
-    drive(&mut system, &records, |RunStepSnapshot { system, record, .. }| walls.observe(record, system));
+    drive(&mut system, &records, |RunStep { system, record, .. }| walls.observe(record, system));
     walls.finish()?;
     ensure!(system.n_scans() > 0, "no laser scan in the log");
     system.events().add("log_problem", read.n_problems());

@@ -9,7 +9,7 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
     slam::{AssociationRule, SlamEstimateRecorder},
-    system::RunStepSnapshot,
+    system::RunStep,
     walls::{self, WallSlamParams},
 };
 
@@ -50,7 +50,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let (name, path) = job.estimates_file();
     let mut estimates = SlamEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
-    let observe = |RunStepSnapshot { system, record, .. }: RunStepSnapshot<'_, PointSystem>| {
+    let observe = |RunStep { system, record, .. }: RunStep<'_, PointSystem>| {
         estimates.observe(record, system);
     };
     let mut slam = points::run(&records, &params, observe)?;

@@ -17,13 +17,13 @@ pub struct CameraParams {
     /// Drift of the automatic white balance: σ of the logarithm of the gains of red and blue. Default 0.02.
     pub white_balance_drift_sigma: f64,
     /// Correlation time of that drift, seconds. Default 20.
-    pub white_balance_drift_correlation_s: f64,
+    pub white_balance_correlation_s: f64,
     /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
     pub vignetting: LinearRgb,
     /// Share of each channel that comes from each of the others. Default 0.05.
     pub crosstalk: f64,
     /// Stray light: share of the image mean added to every pixel. Default 0.015.
-    pub stray_light_share: f64,
+    pub stray_light: f64,
     /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 4000.
     pub full_well_electrons: f64,
     /// Read noise, σ as a share of full scale. Default 0.003.
@@ -57,10 +57,10 @@ impl CameraParams {
             gain: 1.0,
             white_balance: LinearRgb::repeat(1.0),
             white_balance_drift_sigma: 0.02,
-            white_balance_drift_correlation_s: 20.0,
+            white_balance_correlation_s: 20.0,
             vignetting: LinearRgb::new(0.58, 0.50, 0.18),
             crosstalk: 0.05,
-            stray_light_share: 0.015,
+            stray_light: 0.015,
             full_well_electrons: 4000.0,
             read_noise_sigma: 0.003,
             gamma: 0.5,
@@ -93,13 +93,10 @@ impl CameraParams {
         check::not_negative("gain", self.gain)?;
         self.white_balance.iter().try_for_each(|&gain| check::not_negative("white balance", gain))?;
         check::not_negative("drift of the white balance", self.white_balance_drift_sigma)?;
-        check::not_negative(
-            "correlation time of the white balance (s)",
-            self.white_balance_drift_correlation_s,
-        )?;
+        check::not_negative("correlation time of the white balance (s)", self.white_balance_correlation_s)?;
         self.vignetting.iter().try_for_each(|&loss| check::share("vignetting", loss))?;
         check::share("crosstalk", self.crosstalk)?;
-        check::share("stray_light_share", self.stray_light_share)?;
+        check::share("stray_light", self.stray_light)?;
         check::positive("electrons at full scale", self.full_well_electrons)?;
         check::not_negative("read noise", self.read_noise_sigma)?;
         check::positive("gamma", self.gamma)?;

@@ -13,10 +13,10 @@ use crate::league::LinearRgb;
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
-/// use wayfix_scene_sim::league::{CameraParams, HallBackdrop, LampLighting, CameraSimulator, LinearRgb, LeagueScene, SceneSurface, field_map};
+/// use wayfix_scene_sim::league::{CameraParams, HallBackdrop, LampLight, CameraSimulator, LinearRgb, LeagueScene, SceneSurface, field_map};
 /// use wayfix_scene_sim::space;
 ///
-/// let light = LampLighting { ambient: LinearRgb::repeat(0.8), ..LampLighting::default() };
+/// let light = LampLight { ambient: LinearRgb::repeat(0.8), ..LampLight::default() };
 /// let paints = [LinearRgb::new(0.1, 0.4, 0.1); 5];
 /// let surfaces = SceneSurface::of_map(&field_map()?);
 /// let scene = LeagueScene { surfaces, paints: &paints, light: &light, backdrop: &HallBackdrop::default() };

@@ -29,8 +29,7 @@ impl ImagePipeline {
         balance: &LinearRgb,
         rng: &mut R,
     ) -> Vec<u8> {
-        let stray =
-            light.iter().sum::<LinearRgb>() * (self.params.stray_light_share / light.len().max(1) as f64);
+        let stray = light.iter().sum::<LinearRgb>() * (self.params.stray_light / light.len().max(1) as f64);
         let gains = self.params.white_balance.component_mul(balance) * self.params.gain;
         let grey = light.iter().zip(&self.lens).map(|(light, lens)| {
             let seen = self.mixed(&(light + stray).component_mul(lens));

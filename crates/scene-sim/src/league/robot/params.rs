@@ -20,7 +20,7 @@ pub struct FieldWalkParams {
     /// Speed, m/s; 0 never leaves its place. Default 0.25.
     pub speed_mps: f64,
     /// Turning rate, rad/s. Default 1.
-    pub turn_rate_radps: f64,
+    pub turn_radps: f64,
     /// Time constant of the speed, s. Default 0.15.
     pub speed_time_constant_s: f64,
     /// Mean length of a rest, seconds. Default 0.5.
@@ -77,9 +77,9 @@ pub struct GaitOdometryParams {
     /// Shape of that error. Default Student's t with 4 degrees of freedom.
     pub noise_shape: NoiseShape,
     /// σ of the unmeasured rotation per distance, rad/m. Default 0.08.
-    pub heading_drift_sigma_rad_per_m: f64,
+    pub drift_sigma_rad_per_m: f64,
     /// Correlation time of that drift, seconds. Default 8.
-    pub heading_drift_correlation_s: f64,
+    pub drift_correlation_s: f64,
 }
 
 impl Default for LeggedRobotParams {
@@ -88,7 +88,7 @@ impl Default for LeggedRobotParams {
         Self {
             walk: FieldWalkParams {
                 speed_mps: 0.25,
-                turn_rate_radps: 1.0,
+                turn_radps: 1.0,
                 speed_time_constant_s: 0.15,
                 mean_rest_s: 0.5,
                 sideways_share: 0.25,
@@ -115,8 +115,8 @@ impl Default for LeggedRobotParams {
                 turn_scale_range: [0.9, 1.1],
                 noise: 0.1,
                 noise_shape: NoiseShape::StudentT { degrees_of_freedom: 4.0 },
-                heading_drift_sigma_rad_per_m: 0.08,
-                heading_drift_correlation_s: 8.0,
+                drift_sigma_rad_per_m: 0.08,
+                drift_correlation_s: 8.0,
             },
         }
     }
@@ -130,7 +130,7 @@ impl LeggedRobotParams {
     pub fn validate(&self) -> Result<(), SimulationError> {
         let Self { walk, sway, head, odometry } = self;
         check::not_negative("speed (m/s)", walk.speed_mps)?;
-        check::positive("turning rate (rad/s)", walk.turn_rate_radps)?;
+        check::positive("turning rate (rad/s)", walk.turn_radps)?;
         check::positive("lag of the gait (s)", walk.speed_time_constant_s)?;
         check::not_negative("rest (s)", walk.mean_rest_s)?;
         check::share("ways walked sideways", walk.sideways_share)?;
@@ -153,7 +153,7 @@ impl LeggedRobotParams {
         }
         check::not_negative("error of the odometry", odometry.noise)?;
         odometry.noise_shape.validate()?;
-        check::not_negative("drift of the odometry (rad/m)", odometry.heading_drift_sigma_rad_per_m)?;
-        check::not_negative("correlation time of the drift (s)", odometry.heading_drift_correlation_s)
+        check::not_negative("drift of the odometry (rad/m)", odometry.drift_sigma_rad_per_m)?;
+        check::not_negative("correlation time of the drift (s)", odometry.drift_correlation_s)
     }
 }

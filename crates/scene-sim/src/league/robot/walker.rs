@@ -60,8 +60,7 @@ impl Walker {
     /// Speed as a share of its maximum speeds; may exceed 1 if it walks and turns at once.
     pub(super) fn activity(&self) -> f64 {
         let share = |now: f64, top: f64| if top > 0.0 { now / top } else { 0.0 };
-        share(self.velocity.norm(), self.params.speed_mps)
-            + share(self.turning.abs(), self.params.turn_rate_radps)
+        share(self.velocity.norm(), self.params.speed_mps) + share(self.turning.abs(), self.params.turn_radps)
     }
 
     /// Advances the time; returns the motion in its frame before.
@@ -95,7 +94,7 @@ impl Walker {
                 if bearing.abs() < TURNED_RAD {
                     self.task = Task::Walk { to, sideways: false };
                 }
-                (Vector2::zeros(), self.params.turn_rate_radps.copysign(bearing))
+                (Vector2::zeros(), self.params.turn_radps.copysign(bearing))
             }
             Task::Walk { to, sideways } => self.walk(to, sideways, rng),
         }
@@ -127,8 +126,7 @@ impl Walker {
         }
         let velocity = there * (self.params.speed_mps / distance);
         let bearing = libm::atan2(there.y, there.x);
-        let turning =
-            if sideways { 0.0 } else { (2.0 * bearing).clamp(-0.5, 0.5) * self.params.turn_rate_radps };
+        let turning = if sideways { 0.0 } else { (2.0 * bearing).clamp(-0.5, 0.5) * self.params.turn_radps };
         (velocity, turning)
     }
 }

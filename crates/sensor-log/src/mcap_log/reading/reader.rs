@@ -14,7 +14,7 @@ use super::{decode, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::formats::format::shortened;
 use crate::{
-    BagTopic, LogCompleteness, LogError, LogFormat, LogReadReport, Record, RecordData, RowProblem,
+    BagTopic, LogCompleteness, LogError, LogFormat, ReadReport, Record, RecordData, RowProblem,
     RowProblemKind, Stamp,
 };
 
@@ -33,7 +33,7 @@ impl McapRecords {
         source: &Path,
         files: &[PathBuf],
         wanted: &[String],
-        report: &mut LogReadReport,
+        report: &mut ReadReport,
     ) -> Result<Self, LogError> {
         let files = &readable(files, report)?;
         let parts = Parts::open(files)?;
@@ -59,7 +59,7 @@ impl McapRecords {
     }
 
     /// The next record in time order; problems go into the report.
-    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         loop {
             if let Some(record) = self.messages.reorder.pop_ready() {
                 return Some(record);
@@ -71,7 +71,7 @@ impl McapRecords {
     }
 
     /// Reads one record of the file; false at its end.
-    fn step(&mut self, report: &mut LogReadReport) -> bool {
+    fn step(&mut self, report: &mut ReadReport) -> bool {
         let (file, step) =
             self.parts.step(|file, opcode, body| self.messages.take(file, opcode, body, report));
         match step {
@@ -97,7 +97,7 @@ impl McapRecords {
 }
 
 /// The files that can be opened; the others are reported, unless there is none.
-fn readable(files: &[PathBuf], report: &mut LogReadReport) -> Result<Vec<PathBuf>, LogError> {
+fn readable(files: &[PathBuf], report: &mut ReadReport) -> Result<Vec<PathBuf>, LogError> {
     let mut readable = Vec::new();
     let mut first_error = None;
     for path in files {
@@ -179,7 +179,7 @@ impl Messages {
         }
     }
 
-    fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut LogReadReport) {
+    fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut ReadReport) {
         let understood = match opcode {
             op::SCHEMA => self.schema(file, Fields(body)),
             op::CHANNEL => self.channel(file, Fields(body)),
@@ -216,7 +216,7 @@ impl Messages {
         Some(())
     }
 
-    fn message(&mut self, file: usize, mut fields: Fields<'_>, report: &mut LogReadReport) -> Option<()> {
+    fn message(&mut self, file: usize, mut fields: Fields<'_>, report: &mut ReadReport) -> Option<()> {
         let (channel_id, _sequence) = (fields.u16()?, fields.u32()?);
         let (log_time, _publish_time) = (Stamp::from_nanoseconds(fields.u64()?), fields.u64()?);
         self.files[file].n_messages += 1;
@@ -258,7 +258,7 @@ impl Messages {
         Some(())
     }
 
-    fn check_clock(&mut self, file: usize, topic: &str, record: Record, report: &mut LogReadReport) {
+    fn check_clock(&mut self, file: usize, topic: &str, record: Record, report: &mut ReadReport) {
         let clock = self.clocks.entry(topic.to_owned()).or_default();
         let checked = clock.check(record);
         for record in &checked.wrong {
@@ -270,7 +270,7 @@ impl Messages {
         }
     }
 
-    fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut LogReadReport) {
+    fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut ReadReport) {
         let latest = self.clocks.get(topic).and_then(TopicClock::latest);
         let kind =
             if Some(record.stamp) < latest { RowProblemKind::TooLate } else { RowProblemKind::BadStamp };
@@ -279,7 +279,7 @@ impl Messages {
     }
 
     /// Reports the facts known only at the end.
-    fn finish(&mut self, report: &mut LogReadReport) {
+    fn finish(&mut self, report: &mut ReadReport) {
         let held = self
             .clocks
             .iter_mut()
@@ -299,7 +299,7 @@ impl Messages {
         }
     }
 
-    fn release(&mut self, file: usize, records: Vec<Record>, report: &mut LogReadReport) {
+    fn release(&mut self, file: usize, records: Vec<Record>, report: &mut ReadReport) {
         for record in records {
             if let Err(late) = self.reorder.push(record) {
                 let reason =
@@ -309,7 +309,7 @@ impl Messages {
         }
     }
 
-    fn trouble(&self, file: usize, kind: RowProblemKind, reason: String, report: &mut LogReadReport) {
+    fn trouble(&self, file: usize, kind: RowProblemKind, reason: String, report: &mut ReadReport) {
         let FileState { name, n_messages, .. } = &self.files[file];
         report.add(RowProblem { file: name.clone(), row: *n_messages, kind, reason });
     }

@@ -11,7 +11,7 @@ use crate::text::clock_faults::{ClockFault, clock_faults};
 use crate::text::half_circle::warn_of_assumed_field_of_view;
 use crate::text::row::stamp_of;
 use crate::text::scan_odometry::ScanOdometry;
-use crate::{LogError, LogReadReport, Stamp};
+use crate::{LogError, ReadReport, Stamp};
 
 /// Parameters of the front laser's pose on the robot: ahead, to the left, m, and its heading, rad.
 const MOUNT_PARAMETERS: [&str; 3] =
@@ -57,7 +57,7 @@ struct Others {
 
 impl FirstPass {
     /// Reads the log once and reports the assumptions.
-    pub(super) fn of(path: &Path, report: &mut LogReadReport) -> Result<Self, LogError> {
+    pub(super) fn of(path: &Path, report: &mut ReadReport) -> Result<Self, LogError> {
         let mut first_pass = Self::default();
         let (mut scans, mut raw, mut others) = (Scans::default(), Scans::default(), Others::default());
         let mut odometry = ScanOdometry::default();
@@ -118,7 +118,7 @@ impl FirstPass {
     }
 
     /// The laser's mount is the difference of the two poses if constant, else that of the parameters.
-    fn judge_poses(&mut self, scans: &Scans, stated: Option<Pose2<f64>>, report: &mut LogReadReport) {
+    fn judge_poses(&mut self, scans: &Scans, stated: Option<Pose2<f64>>, report: &mut ReadReport) {
         let apart = scans.poses.iter().map(|poses| poses.odometry.inverse().compose(&poses.laser));
         let difference = common(&apart.collect::<Vec<_>>());
         let is_corrected = lasts(scans.is_corrected.iter().copied());

@@ -26,7 +26,7 @@ use super::half_circle::is_half_circle;
 use super::row::{RowError, stamp_of};
 use super::scan_odometry::ScanOdometry;
 use crate::formats::compressed::TextReader;
-use crate::{LogCompleteness, LogError, LogReadReport, PoseKind, Record, RecordData, RowProblemKind};
+use crate::{LogCompleteness, LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row).is_ok()
@@ -46,7 +46,7 @@ pub(crate) struct CarmenLog {
 
 impl CarmenLog {
     /// Surveys the log; assumptions go into the report.
-    pub(crate) fn open(path: &Path, poses: PoseKind, report: &mut LogReadReport) -> Result<Self, LogError> {
+    pub(crate) fn open(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Self, LogError> {
         let lines = Lines::open(path)?;
         Ok(Self {
             file: lines.file_name(),
@@ -61,7 +61,7 @@ impl CarmenLog {
     }
 
     /// The next record; problems go into the report.
-    pub(crate) fn next(&mut self, report: &mut LogReadReport) -> Option<Record> {
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         while self.ready.is_empty() {
             let lines = self.lines.as_mut()?;
             let (number, row) = match lines.next_row() {
@@ -117,7 +117,7 @@ impl CarmenLog {
         is_again.then(|| format!("{word} (the scan of {} again)", message.word()))
     }
 
-    fn take_scan(&mut self, line: u64, row: ScanRow, report: &mut LogReadReport) -> Result<(), RowError> {
+    fn take_scan(&mut self, line: u64, row: ScanRow, report: &mut ReadReport) -> Result<(), RowError> {
         let own = stamp_of(row.seconds)?;
         match self.first_pass.faults.get(&line) {
             Some(ClockFault::Outlier) => {

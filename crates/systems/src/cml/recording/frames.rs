@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, LogReadReport, RowProblem, RowProblemKind, image_files};
+use wayfix_sensor_log::{EncodedImage, ReadReport, RowProblem, RowProblemKind, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
@@ -34,7 +34,7 @@ pub struct PosedFrameFolder {
     /// Number of images without a pose.
     pub n_without_pose: usize,
     /// Skipped rows and images, and assumptions made.
-    pub read: LogReadReport,
+    pub read: ReadReport,
     /// Units of the tables.
     pub notes: Vec<String>,
 }
@@ -63,7 +63,7 @@ impl PosedFrameFolder {
         let Some(first) = names.first() else {
             return Err(RecordingError::Nothing { path: folder.to_owned(), what: "PNG or JPEG images" });
         };
-        let (mut read, mut notes) = (LogReadReport::default(), Vec::new());
+        let (mut read, mut notes) = (ReadReport::default(), Vec::new());
         let rows = poses::read(tables.poses, tables.columns, &mut read, &mut notes)?;
         let found = match tables.stamps {
             Some(path) => Some(path.to_owned()),

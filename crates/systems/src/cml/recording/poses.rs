@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use wayfix_estimation_traits::wrap_angle;
-use wayfix_sensor_log::LogReadReport;
+use wayfix_sensor_log::ReadReport;
 
 use super::{
     RecordingError,
@@ -29,7 +29,7 @@ pub(super) struct PoseRow {
 pub(super) fn read(
     path: &Path,
     names: Option<&PoseTableColumns>,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Option<PoseRow>>, RecordingError> {
     let table = Table::read(path, report)?;
@@ -40,11 +40,7 @@ pub(super) fn read(
     Ok(rows)
 }
 
-fn poses(
-    table: &Table,
-    columns: &Columns,
-    report: &mut LogReadReport,
-) -> Result<Vec<Option<PoseRow>>, String> {
+fn poses(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Vec<Option<PoseRow>>, String> {
     let (x, y) = (columns.need(Quantity::X, "x")?, columns.need(Quantity::Y, "y")?);
     let (time, heading) = (columns.get(Quantity::Time), columns.get(Quantity::Heading));
     let file = columns.get(Quantity::File);
@@ -79,7 +75,7 @@ mod tests {
         let table = Table::parse(text)?;
         let names = names.map(|names| names.parse::<PoseTableColumns>()).transpose()?;
         let columns = Columns::of(&table, names.as_ref(), "--columns")?;
-        Ok((poses(&table, &columns, &mut LogReadReport::default())?, columns))
+        Ok((poses(&table, &columns, &mut ReadReport::default())?, columns))
     }
 
     fn first(text: &str, names: Option<&str>) -> PoseRow {

@@ -4,7 +4,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use wayfix_sensor_log::{LogReadReport, is_hidden};
+use wayfix_sensor_log::{ReadReport, is_hidden};
 
 use super::{
     RecordingError,
@@ -19,7 +19,7 @@ pub(super) type Stamps = BTreeMap<String, f64>;
 pub(super) fn read(
     path: &Path,
     names: Option<&PoseTableColumns>,
-    report: &mut LogReadReport,
+    report: &mut ReadReport,
     notes: &mut Vec<String>,
 ) -> Result<Stamps, RecordingError> {
     let table = Table::read(path, report)?;
@@ -42,7 +42,7 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
     candidates.retain(|path| is_text(path) && !is_hidden(path) && !same(path));
     candidates.sort();
     let names_it = |path: &PathBuf| {
-        let table = Table::read(path, &mut LogReadReport::default());
+        let table = Table::read(path, &mut ReadReport::default());
         table.is_ok_and(|table| {
             table.rows.iter().any(|(_, row)| row.iter().any(|cell| file_name(cell) == a_frame))
         })
@@ -50,7 +50,7 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
     candidates.into_iter().find(names_it)
 }
 
-fn parse(table: &Table, columns: &Columns, report: &mut LogReadReport) -> Result<Stamps, String> {
+fn parse(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Stamps, String> {
     let (file, time) = (columns.need(Quantity::File, "file")?, columns.need(Quantity::Time, "t")?);
     let mut stamps = Stamps::new();
     for (line, cells) in &table.rows {
@@ -82,7 +82,7 @@ mod tests {
     fn stamps(text: &str) -> Result<Stamps, String> {
         let table = Table::parse(text)?;
         let columns = Columns::of(&table, None, "--stamp-columns")?;
-        parse(&table, &columns, &mut LogReadReport::default())
+        parse(&table, &columns, &mut ReadReport::default())
     }
 
     #[test]

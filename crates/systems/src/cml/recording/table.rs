@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_sensor_log::{LogReadReport, RowProblem, RowProblemKind};
+use wayfix_sensor_log::{ReadReport, RowProblem, RowProblemKind};
 
 use super::{
     RecordingError,
@@ -24,7 +24,7 @@ pub(super) struct Table {
 const MAX_BYTES: u64 = 256 << 20;
 
 impl Table {
-    pub(super) fn read(path: &Path, report: &mut LogReadReport) -> Result<Self, RecordingError> {
+    pub(super) fn read(path: &Path, report: &mut ReadReport) -> Result<Self, RecordingError> {
         let io = |source| RecordingError::Io { path: path.to_owned(), source };
         let refused = |reason: String| RecordingError::Table { path: path.to_owned(), reason };
         if fs::metadata(path).map_err(io)?.len() > MAX_BYTES {
@@ -89,7 +89,7 @@ impl Table {
     }
 
     /// Counts a row as unusable.
-    pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut LogReadReport) {
+    pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut ReadReport) {
         report.rows_read = report.rows_read.saturating_sub(1);
         let kind = if reason.contains("columns, not") {
             RowProblemKind::ColumnCount
@@ -100,7 +100,7 @@ impl Table {
     }
 
     /// The first skipped row of this table.
-    pub(super) fn first_problem(&self, report: &LogReadReport) -> String {
+    pub(super) fn first_problem(&self, report: &ReadReport) -> String {
         let first = report.examples.iter().find(|problem| problem.file == self.file);
         first.map_or_else(String::new, |problem| format!("line {}: {}", problem.row, problem.reason))
     }
@@ -110,7 +110,7 @@ impl Table {
         &self,
         columns: &Columns,
         option: &str,
-        report: &mut LogReadReport,
+        report: &mut ReadReport,
         notes: &mut Vec<String>,
     ) {
         if let Some(units) = columns.units(false) {

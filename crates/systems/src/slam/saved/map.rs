@@ -7,7 +7,7 @@ use wayfix_slam_ekf::SlamSnapshot;
 use super::{SavedMapError, envelope};
 use crate::{
     saved::write_atomically,
-    slam::{AssociationRule, SlamFrontEndState},
+    slam::{AssociationRule, FrontEndState},
 };
 
 /// All that a [`SlamSystem`](crate::slam::SlamSystem) remembers between two records, in a file.
@@ -40,7 +40,7 @@ struct Kind {
 }
 
 impl Kind {
-    fn of<S: SlamFrontEndState>() -> Self {
+    fn of<S: FrontEndState>() -> Self {
         Self {
             robot: S::ROBOT.0.to_owned(),
             landmark: S::LANDMARK.0.to_owned(),
@@ -49,7 +49,7 @@ impl Kind {
         }
     }
 
-    fn check<S: SlamFrontEndState>(&self) -> Result<(), SavedMapError> {
+    fn check<S: FrontEndState>(&self) -> Result<(), SavedMapError> {
         let differs = |((what, expected), (_, found)): ((_, String), (&str, String))| {
             (expected != found).then_some(SavedMapError::Kind { what, expected, found })
         };
@@ -67,7 +67,7 @@ impl Kind {
     }
 }
 
-impl<R, L, S: SlamFrontEndState> SlamState<R, L, S>
+impl<R, L, S: FrontEndState> SlamState<R, L, S>
 where
     Self: Serialize + DeserializeOwned,
 {
@@ -134,24 +134,15 @@ pub(crate) fn check_association(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{PointFrontEndState, SavedPointMap};
+    use crate::points::{PointFrontEndState as Points, SavedPointMap};
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (
-                Kind { robot: "Ackermann".to_owned(), ..Kind::of::<PointFrontEndState>() },
-                "robot is Ackermann",
-            ),
-            (Kind { landmark: "wall".to_owned(), ..Kind::of::<PointFrontEndState>() }, "landmark is wall"),
-            (
-                Kind { robot_dimension: 3, ..Kind::of::<PointFrontEndState>() },
-                "robot dimension is 3, here it is 4",
-            ),
-            (
-                Kind { landmark_dimension: 3, ..Kind::of::<PointFrontEndState>() },
-                "landmark dimension is 3, here it is 2",
-            ),
+            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<Points>() }, "robot is Ackermann"),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<Points>() }, "landmark is wall"),
+            (Kind { robot_dimension: 3, ..Kind::of::<Points>() }, "robot dimension is 3, here it is 4"),
+            (Kind { landmark_dimension: 3, ..Kind::of::<Points>() }, "landmark dimension is 3, here it is 2"),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedPointMap::from_bytes(&sealed).unwrap_err();

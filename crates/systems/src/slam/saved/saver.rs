@@ -4,7 +4,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use wayfix_sensor_log::{Record, Stamp};
 
 use super::{SavedMapError, SlamState};
-use crate::slam::SlamFrontEndState;
+use crate::slam::FrontEndState;
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
 pub struct PeriodicStateSaver {
@@ -23,7 +23,7 @@ impl PeriodicStateSaver {
 
     /// Saves when it is time, after a record and before `next`. Only between two stamps, so that a resumed run knows by the
     /// stamp what was taken. A failure is kept until [`finish`](Self::finish).
-    pub fn observe<R, L, S: SlamFrontEndState>(
+    pub fn observe<R, L, S: FrontEndState>(
         &mut self,
         record: &Record,
         next: Option<&Record>,
@@ -44,7 +44,7 @@ impl PeriodicStateSaver {
     ///
     /// # Errors
     /// When that or anything before could not be written.
-    pub fn finish<R, L, S: SlamFrontEndState>(self, state: &SlamState<R, L, S>) -> Result<(), SavedMapError>
+    pub fn finish<R, L, S: FrontEndState>(self, state: &SlamState<R, L, S>) -> Result<(), SavedMapError>
     where
         SlamState<R, L, S>: Serialize + DeserializeOwned,
     {

@@ -16,7 +16,7 @@ use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
     color::{self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
-    system::{RunStepSnapshot, Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
 };
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
@@ -137,7 +137,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         &params,
         start,
         arguments.common.seed,
-        |RunStepSnapshot { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             if let Some(estimates) = &mut estimates {
                 estimates.observe(record, system);
             }

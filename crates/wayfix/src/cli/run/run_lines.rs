@@ -15,7 +15,7 @@ use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     lines::{self, LineEstimateRecorder, LineExtractionSystem},
-    system::{RunStepSnapshot, Stopwatch, System, drive},
+    system::{RunStep, Stopwatch, System, drive},
 };
 
 /// Walls: the straight segments in every laser scan of a log, with their ends.
@@ -69,7 +69,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut walls: Option<LineEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = terminal::bar(records.len(), "walls");
-    drive(&mut system, &records, |RunStepSnapshot { system, record, .. }| {
+    drive(&mut system, &records, |RunStep { system, record, .. }| {
         if let Some(walls) = &mut walls {
             walls.observe(record, system);
         }

@@ -8,15 +8,15 @@ use wayfix_evaluation::{
     report::ReportRun,
     terminal::{self, print, print_message},
 };
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogReadReport};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
-        AssociationRule, PeriodicStateSaver, SlamEstimateRecorder, SlamFrontEnd, SlamFrontEndState, SlamRun,
+        AssociationRule, FrontEnd, FrontEndState, PeriodicStateSaver, SlamEstimateRecorder, SlamRun,
         SlamState, SlamSystem, StateOf,
     },
-    system::{RunStepSnapshot, Stopwatch},
+    system::{RunStep, Stopwatch},
 };
 
 use super::super::{
@@ -149,10 +149,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
 /// Runs EKF-SLAM with one kind of landmark, and shows and saves the result. `input` is the format, the number of records and how reading
 /// them went.
-pub(super) fn execute<F: SlamFrontEnd, T>(
+pub(super) fn execute<F: FrontEnd, T>(
     arguments: &Arguments,
-    (origin, n_records, read): (LogFormat, usize, &LogReadReport),
-    run: impl FnOnce(&mut dyn FnMut(RunStepSnapshot<'_, SlamSystem<F>>)) -> Result<SlamRun<F, T>>,
+    (origin, n_records, read): (LogFormat, usize, &ReadReport),
+    run: impl FnOnce(&mut dyn FnMut(RunStep<'_, SlamSystem<F>>)) -> Result<SlamRun<F, T>>,
     summarize: impl FnOnce(&mut SlamRun<F, T>) -> Result<ReportRun>,
     plots: impl FnOnce(&SlamRun<F, T>) -> Result<Vec<SvgPlot>, PlotError>,
 ) -> Result<ExitCode>
@@ -165,7 +165,7 @@ where
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| PeriodicStateSaver::new(path, arguments.save_every));
     let bar = terminal::bar(n_records, "EKF-SLAM");
-    let slam = run(&mut |RunStepSnapshot { system, record, next }: RunStepSnapshot<'_, SlamSystem<F>>| {
+    let slam = run(&mut |RunStep { system, record, next }: RunStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
@@ -196,7 +196,7 @@ where
 
 impl Arguments {
     /// The map of `--resume`.
-    pub(super) fn saved_map<R, L, S: SlamFrontEndState>(&self) -> Result<Option<SlamState<R, L, S>>>
+    pub(super) fn saved_map<R, L, S: FrontEndState>(&self) -> Result<Option<SlamState<R, L, S>>>
     where
         SlamState<R, L, S>: Serialize + DeserializeOwned,
     {

@@ -2,7 +2,7 @@ use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{LogFormat, LogReadReport, PoseRelation, Record, RecordData, read_relations};
+use wayfix_sensor_log::{LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations};
 use wayfix_systems::{
     settings::from_toml,
     slam::AssociationRule,
@@ -23,7 +23,7 @@ pub(in crate::cli) fn main(
     arguments: &run_slam::Arguments,
     records: &[Record],
     origin: LogFormat,
-    read: &LogReadReport,
+    read: &ReadReport,
 ) -> Result<ExitCode> {
     ensure!(
         arguments.profile.is_none(),

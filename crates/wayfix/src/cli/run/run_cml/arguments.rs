@@ -32,7 +32,7 @@ use wayfix_systems::cml::{CmlTask, recording::PoseTableColumns};
 ///
 /// Frames have no odometry: it is computed from the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
 ///
-/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, with nearest_reference_position_error_mean_m of the most similar reference alone
+/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, with nearest_reference_error_mean_m of the most similar reference alone
 /// and dead_reckoning_error_mean_m; n_references; step_mean_us. Unusable views are skipped, counted in the events and listed on standard error.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]

@@ -11,7 +11,7 @@ use wayfix_appearance_cml::{
     StartPosePrior,
 };
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogReadReport};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
 
 pub(in crate::cli) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
@@ -29,7 +29,7 @@ use wayfix_systems::{
         CmlTask, PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
         recording::{PoseTables, PosedFrameFolder},
     },
-    system::{RunStepSnapshot, Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
 };
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
@@ -61,7 +61,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         start,
         &params,
         arguments.common.seed,
-        |RunStepSnapshot { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
             bar.inc(1);
@@ -90,7 +90,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 /// The task, and the read report.
 struct Input {
     plan: CmlRunPlan,
-    read: LogReadReport,
+    read: ReadReport,
     origin: LogFormat,
 }
 
@@ -161,7 +161,7 @@ impl Arguments {
             &camera,
             self.common.seed,
         )?;
-        let mut read = LogReadReport::default();
+        let mut read = ReadReport::default();
         for recording in taught.iter().chain([&recording]) {
             read.join(&recording.read);
         }
