@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | matrices | [`KalmanFilter`] with [`LinearMotion`] and [`LinearSensor`] |
 //! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`KalmanAlgorithm`]: [`ExtendedKalmanAlgorithm`], [`IteratedExtendedKalmanAlgorithm`], [`UnscentedKalmanAlgorithm`] |
+//! | components of the state seen alone, with independent noise | [`update_component`] |
 //! | sharp sensors, vague priors or single precision | the form [`SquareRootKalmanAlgorithm`] |
 //! | large measurements with little state, or small with much | the forms [`InformationFilterAlgorithm`], [`SequentialUpdateAlgorithm`] |
 //! | several measurements at once | [`StackedSensor`] sensors: the batch update |
@@ -56,7 +57,9 @@ pub use forms::{
     UnscentedKalmanAlgorithm,
 };
 pub use innovation::Innovation;
-pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};
+pub use linear::{
+    KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate, update_component,
+};
 pub use smoother::RtsSmoother;
 pub use stacked::{StackedMeasurement, StackedSensor};
 pub use switching::{

@@ -7,7 +7,6 @@ mod filter;
 mod means;
 mod params;
 mod tracker;
-mod update;
 
 pub use bank::{LightingFilterBank, SelectedLightingFilter};
 pub use density::ColorDensity;

@@ -208,20 +208,18 @@ where
         self.check(image, mount)?;
         let scene = self.scene(&self.likelihood);
         let frame = PreparedFrame::new(&scene, image, mount, &self.colors()?)?;
+        let light_before = self.present.light().unwrap_or(&self.prior).clone();
         let mut present = self.present.clone();
-        let light = self.present.light().unwrap_or(&self.prior).clone();
         self.step(&mut present, &frame, rng)?;
-        let mut relocalization = self.relocalization.clone();
-        let odometry = self.delta;
-        let log_evidence = present.weighing.log_evidence;
-        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry, log_evidence };
-        let share =
-            self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(&newest)));
-        let step = |alternative: &mut ColorFilter<T>| match self.step(alternative, &frame, rng) {
-            Ok(()) => share * alternative.weighing.log_evidence,
-            Err(_) => f64::NEG_INFINITY,
+
+        let newest = BufferedFrame {
+            image: image.clone(),
+            mount: *mount,
+            odometry: self.delta,
+            log_evidence: present.weighing.log_evidence,
         };
-        relocalization.observe(share * log_evidence, step)?;
+        let mut relocalization = self.relocalization.clone();
+        self.test_alternatives(&mut relocalization, &frame, &newest, rng)?;
         let mut buffer = self.buffer.clone();
         buffer.push(newest, self.params.search.n_buffered_frames);
         let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
@@ -229,17 +227,37 @@ where
             present.set_max_particles(self.params.max_particles);
             buffer.forget_evidence();
         }
-
-        self.n_updates += 1;
         self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
-        self.log_ratios.push_back(present.weighing.mean_log_likelihood);
-        self.lights.push_back(light);
+        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
+        self.remember_frame(light_before);
+        self.outcome()
+    }
+
+    /// Compares the alternatives with the present place by the frame.
+    fn test_alternatives<R: Rng + ?Sized>(
+        &self,
+        relocalization: &mut RelocalizationTest<ColorFilter<T>>,
+        frame: &PreparedFrame<'_, L>,
+        newest: &BufferedFrame,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
+        let share = self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(newest)));
+        let log_evidence = |alternative: &mut ColorFilter<T>| match self.step(alternative, frame, rng) {
+            Ok(()) => share * alternative.weighing.log_evidence,
+            Err(_) => f64::NEG_INFINITY,
+        };
+        Ok(relocalization.observe(share * newest.log_evidence, log_evidence)?)
+    }
+
+    /// Counts the frame; keeps its light and its evidence for the map as long as the buffer keeps the frame.
+    fn remember_frame(&mut self, light_before: Arc<T>) {
+        self.n_updates += 1;
+        self.delta = OdometryDelta::default();
+        self.log_ratios.push_back(self.present.weighing.mean_log_likelihood);
+        self.lights.push_back(light_before);
         let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_buffered_frames);
         self.log_ratios.drain(..n_old);
         self.lights.drain(..n_old);
-        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
-        self.delta = OdometryDelta::default();
-        self.outcome()
     }
 
     /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]

@@ -5,7 +5,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::league::LeagueParams;
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
 
@@ -15,12 +15,12 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, run, summarize};
 
-/// The drive of the stored logs in random halls: means over halls with 95 % intervals.
+/// A drive in random halls: means over halls with 95 % intervals.
 /// # Errors
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: LampSetting,
+    drive_params: &LeagueParams,
     map: &Arc<ColorMap>,
     bank: &LightingFilterBank,
     params: &ColorSystemParams,
@@ -30,7 +30,7 @@ pub fn other_halls(
         .par_iter()
         .map(|&seed| {
             let mut run =
-                run(&drive(seed, lighting)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+                run(&drive(seed, drive_params)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;
@@ -52,8 +52,7 @@ pub fn other_halls(
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
-/// The drive of the stored logs in its own hall.
-pub(super) fn drive(seed: u64, lighting: LampSetting) -> Result<Vec<Record>> {
-    let drive = LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() };
-    Ok(drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
+/// The log of a drive in a hall of its own.
+pub(super) fn drive(seed: u64, params: &LeagueParams) -> Result<Vec<Record>> {
+    Ok(params.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::LightingPriors;
-use wayfix_scene_sim::league::LampSetting;
+use wayfix_scene_sim::league::LeagueParams;
 use wayfix_sensor_log::Record;
 
 use super::halls::drive;
@@ -42,14 +42,14 @@ pub fn withheld(
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: LampSetting,
+    drive_params: &LeagueParams,
     map: &Arc<ColorMap>,
     learned: &LightingPriors,
     params: &ColorSystemParams,
 ) -> Result<ReportRun> {
     let halls: Vec<Vec<Rates>> = seeds
         .into_iter()
-        .map(|seed| rates(&drive(seed, lighting)?, map, learned, params, seed))
+        .map(|seed| rates(&drive(seed, drive_params)?, map, learned, params, seed))
         .collect::<Result<_>>()?;
     let mut metrics = vec![Metric::new("n_halls", halls.len() as f64, "")];
     for (color, name) in map.colors().iter().enumerate() {

@@ -79,10 +79,13 @@ impl LeagueDrive {
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
     pub fn in_venue(
         params: &LeagueParams,
-        venue: LeagueVenue,
+        mut venue: LeagueVenue,
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate(&venue.camera)?;
+        venue.camera.exposure_mode = params.exposure_mode;
+        let grey = |paint: &LinearRgb| LinearRgb::repeat(paint.mean() * (1.0 - params.paint_chroma));
+        venue.paints = venue.paints.map(|paint| grey(&paint) + paint * params.paint_chroma);
         let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;
         let camera_simulator = CameraSimulator::new(venue.camera)?;
         let drift = GaussMarkovProcess::new(venue.camera.white_balance_correlation_s);

@@ -14,7 +14,6 @@ mod picture;
 mod records;
 mod robot;
 mod things;
-mod training;
 mod venue;
 mod yuv;
 
@@ -25,12 +24,11 @@ pub use illuminant::black_body;
 pub use light::{Lamp, LampLight, LightField, LinearRgb};
 pub use params::LeagueParams;
 pub use picture::{
-    CameraParams, CameraSimulator, ChromaSubsampling, LeaguePicture, LeagueScene, Material, SceneSurface,
-    SurfaceShape,
+    CameraParams, CameraSimulator, ChromaSubsampling, ExposureMode, LeaguePicture, LeagueScene, Material,
+    SceneSurface, SurfaceShape,
 };
 pub use robot::{
     BodySwayParams, FieldWalkParams, GaitOdometryParams, LeggedRobot, LeggedRobotParams, RobotHeadParams,
 };
 pub use things::UnmappedObjects;
-pub use training::{ColorMeans, TrainingVenue, TrainingVenuesParams};
 pub use venue::{LampSetting, LeagueVenue};

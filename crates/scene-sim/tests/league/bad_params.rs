@@ -1,12 +1,11 @@
 //! Parameters without a meaning are refused with their name and value; nothing panics.
 
-use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::league::{
     BodySwayParams, CameraParams, CameraSimulator, FieldWalkParams, GaitOdometryParams, LeagueDrive,
-    LeagueParams, LeggedRobotParams, LinearRgb, RobotHeadParams, TrainingVenuesParams,
+    LeagueParams, LeggedRobotParams, LinearRgb, RobotHeadParams,
 };
 use wayfix_scene_sim::random::NoiseShape;
 
@@ -123,14 +122,4 @@ fn drives() {
     assert!(matches!(many, Err(SimulationError::TooMany { got: 100_001, .. })));
     let none = LeagueParams { n_frames: 0, ..default };
     assert_eq!(LeagueDrive::new(&none, streams(1)).expect("no frames are no fault").count(), 0);
-}
-
-#[test]
-fn training() {
-    let rng = ChaCha8Rng::seed_from_u64(1);
-    let many = TrainingVenuesParams { n_halls: 10_001, ..TrainingVenuesParams::default() };
-    assert!(matches!(many.gather(rng.clone()), Err(SimulationError::TooMany { got: 10_001, .. })));
-    let none = TrainingVenuesParams { n_images_per_light: 0, n_halls: 1, ..TrainingVenuesParams::default() };
-    let sets = none.gather(rng).expect("no pictures are no fault");
-    assert!(sets.iter().all(|set| set.images.is_empty() && set.pixel_variance == [0.0; 3]));
 }

@@ -7,12 +7,12 @@ use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
     errors::PoseWithTruth,
     plot::{
-        CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError,
-        PlotSeries, PoseErrorPlot, PoseErrorSample, SvgPlot,
+        FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries, PoseErrorPlot,
+        PoseErrorSample, SvgPlot,
     },
 };
 
-/// Plots the path on the field, errors with 3σ bands, the UV ellipses of the colours, and the light over time.
+/// Plots the path on the field, errors with 3σ bands, and the number of particles over time.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
@@ -22,15 +22,6 @@ pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
     if !samples.is_empty() {
         plots.push(errors(run, &samples).draw()?);
     }
-    let light = run.system.light();
-    let member = |k: usize| (format!("light {k}, V"), uv_ellipses(run.system.map(), light.member(k)));
-    let ellipses = CovarianceEllipsesPlot {
-        title: "What the colours look like at the end (1σ in U and V)".to_owned(),
-        x_label: "U".to_owned(),
-        sigmas: 1.0,
-        groups: (0..light.n_members()).map(member).collect(),
-    };
-    plots.push(ellipses.draw()?);
     plots.push(particles(run).draw()?);
     Ok(plots)
 }

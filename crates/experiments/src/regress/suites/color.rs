@@ -1,10 +1,13 @@
 use std::{ops::Range, path::PathBuf, sync::Arc};
 
-use crate::color as experiments;
+use crate::color::{self as experiments, TrainingHalls};
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_color_map::ColorMap;
-use wayfix_scene_sim::{Scenario, ScenarioParams, league::LampSetting};
+use wayfix_scene_sim::{
+    Scenario, ScenarioParams,
+    league::{ExposureMode, LampSetting, LeagueParams},
+};
 use wayfix_sensor_log::{LogOpenOptions, Record};
 
 use super::super::PlannedJob;
@@ -61,10 +64,19 @@ enum Experiment {
     WithheldHallsDark,
     /// The same in bright light.
     WithheldHallsBright,
+    /// The same with a camera that sets exposure and white balance for every picture, and pale paints.
+    WithheldHallsAutomatic,
     /// Frame time against the number of particles.
     FrameTime,
     /// Recorded images of the middle-size league.
     Venues,
+}
+
+/// Paints half as far from grey as those of the league: chosen before any run, as a halving.
+const PALE_CHROMA: f64 = 0.5;
+
+fn under(lighting: LampSetting) -> LeagueParams {
+    LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() }
 }
 
 fn field() -> PathBuf {
@@ -93,7 +105,8 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     if settings.as_published {
         params.set_published();
     }
-    let learned = settings.lights.map_or_else(priors::built_in, priors::learn_from_simulation)?;
+    let learned =
+        settings.lights.map_or_else(priors::built_in, |k| TrainingHalls::default().learn_priors(k))?;
     let seed = job.options.seed;
     let bank = priors::bank(&learned, &params)?;
     let seeds = settings.seeds(job);
@@ -101,22 +114,36 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         Experiment::Localize => localize(job, map, &params),
         Experiment::Withheld => experiments::withheld(&records(job)?, &map, &learned, &params, seed),
         Experiment::Switching => {
-            let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
+            let single = priors::bank(&TrainingHalls::default().learn_priors(1)?, &params)?;
             experiments::switching(&records(job)?, &switches(job), &map, &bank, &single, &params, seed)
         }
         Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
         Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
         Experiment::OtherHallsDark => {
-            experiments::other_halls(seeds, LampSetting::Dark, &map, &bank, &params)
+            experiments::other_halls(seeds, &under(LampSetting::Dark), &map, &bank, &params)
         }
         Experiment::OtherHallsBright => {
-            experiments::other_halls(seeds, LampSetting::Bright, &map, &bank, &params)
+            experiments::other_halls(seeds, &under(LampSetting::Bright), &map, &bank, &params)
         }
         Experiment::WithheldHallsDark => {
-            experiments::withheld_in_halls(seeds, LampSetting::Dark, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, &under(LampSetting::Dark), &map, &learned, &params)
         }
         Experiment::WithheldHallsBright => {
-            experiments::withheld_in_halls(seeds, LampSetting::Bright, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, &under(LampSetting::Bright), &map, &learned, &params)
+        }
+        Experiment::WithheldHallsAutomatic => {
+            let halls = TrainingHalls {
+                exposure_mode: ExposureMode::Automatic,
+                paint_chroma: PALE_CHROMA,
+                ..TrainingHalls::default()
+            };
+            let drive = LeagueParams {
+                exposure_mode: halls.exposure_mode,
+                paint_chroma: halls.paint_chroma,
+                ..LeagueParams::default()
+            };
+            let learned = halls.learn_priors(settings.lights.unwrap_or(2))?;
+            experiments::withheld_in_halls(seeds, &drive, &map, &learned, &params)
         }
         Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
@@ -170,7 +197,7 @@ fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::plots(&run)?;
-    figures.push(particles.draw(&run)?);
+    figures.extend(particles.draw(&run)?);
     figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
     Ok(ReportRun { log: Some(name), figures, ..color::summarize(&mut run) })
 }

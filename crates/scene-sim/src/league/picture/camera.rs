@@ -10,6 +10,8 @@ pub struct CameraParams {
     pub camera: PinholeCamera,
     /// Exposure time, ms. Default 10.
     pub exposure_ms: u32,
+    /// What sets gain and white balance. Default [`ExposureMode::Manual`].
+    pub exposure_mode: ExposureMode,
     /// Signal, as a share of full scale, of radiance 1. Default 1.
     pub gain: f64,
     /// Gains of the three channels. Default 1.
@@ -44,8 +46,16 @@ pub enum ChromaSubsampling {
     /// Two beside each other (4:2:2).
     #[default]
     Pairs,
-    /// Two by two (4:2:0).
-    Squares,
+}
+
+/// What sets gain and white balance of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ExposureMode {
+    /// [`gain`](CameraParams::gain) and [`white_balance`](CameraParams::white_balance).
+    #[default]
+    Manual,
+    /// Each picture: its mean becomes 18 % grey, by average metering [ISO 2720] and the grey-world assumption [Buchsbaum 1980].
+    Automatic,
 }
 
 impl CameraParams {
@@ -54,6 +64,7 @@ impl CameraParams {
         Self {
             camera,
             exposure_ms: 10,
+            exposure_mode: ExposureMode::default(),
             gain: 1.0,
             white_balance: LinearRgb::repeat(1.0),
             white_balance_drift_sigma: 0.02,

@@ -6,7 +6,7 @@ use super::exposure::Exposure;
 use super::image_pipeline::ImagePipeline;
 use super::scene::LeagueScene;
 use crate::SimulationError;
-use crate::league::LinearRgb;
+use crate::league::{LinearRgb, yuv};
 
 /// Takes pictures with one camera.
 ///
@@ -48,6 +48,14 @@ pub struct LeaguePicture {
     /// during the whole exposure comes from one map colour. Rays pass through a square 1.2 pixels wide, four per pixel and spread over the
     /// exposure. Chroma that is shared with a neighbour does not count as mixed.
     pub labels: Vec<u8>,
+}
+
+impl LeaguePicture {
+    /// Y, U, V of each pixel: BT.601 in full range, U and V about 0, not rounded.
+    pub fn yuv(&self) -> impl Iterator<Item = LinearRgb> {
+        let pixels = self.rgb.chunks_exact(3);
+        pixels.map(|rgb| yuv::from_rgb(&LinearRgb::from_iterator(rgb.iter().map(|&byte| f64::from(byte)))))
+    }
 }
 
 impl CameraSimulator {

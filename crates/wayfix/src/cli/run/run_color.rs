@@ -164,7 +164,7 @@ const FILM_FRAMES: usize = 5;
 
 fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleSnapshots) -> Result<Vec<SvgPlot>> {
     let mut plots = color::plots(color)?;
-    plots.push(particles.draw(color)?);
+    plots.extend(particles.draw(color)?);
     plots.push(color::film(color, records, FILM_FRAMES)?);
     Ok(plots)
 }
