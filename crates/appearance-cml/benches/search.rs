@@ -88,7 +88,7 @@ fn drives() -> (Vec<Panorama>, Vec<Panorama>) {
     let mut drive = |metres: f64| -> Vec<Panorama> {
         let route = building.aisles().tour(metres, &mut rng).expect("aisles");
         let params = IndoorDriveParams {
-            drive: calibrated_robot(&mut rng),
+            robot: calibrated_robot(&mut rng),
             n_people: 20,
             ..IndoorDriveParams::default()
         };

@@ -45,7 +45,7 @@ pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
 pub use hierarchical::{
-    GroupStatistics, HierarchicalGaussianFit, HierarchicalGaussianParams, InverseWishart, MeanPrior,
+    HierarchicalGaussianFit, HierarchicalGaussianParams, InverseWishart, MeanPrior, PooledGroupEstimate,
     fit_hierarchical,
 };
 pub use likelihood::GaussianLikelihood;

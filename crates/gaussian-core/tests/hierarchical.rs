@@ -7,8 +7,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_gaussian_core::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalGaussianParams, InverseWishart, IterationError,
-    MeanPrior, fit_hierarchical,
+    Gaussian, GaussianError, HierarchicalGaussianParams, InverseWishart, IterationError, MeanPrior,
+    PooledGroupEstimate, fit_hierarchical,
 };
 
 const D: usize = 6;
@@ -28,12 +28,12 @@ fn known_prior(seed: u64) -> Gaussian<DVector<f64>> {
 }
 
 /// Groups of one to five observations in which whole blocks are missing; a noise of variance 0.5.
-fn draw_groups(prior: &Gaussian<DVector<f64>>, n: usize, rng: &mut ChaCha8Rng) -> Vec<GroupStatistics> {
+fn draw_groups(prior: &Gaussian<DVector<f64>>, n: usize, rng: &mut ChaCha8Rng) -> Vec<PooledGroupEstimate> {
     let factor = prior.covariance().clone().cholesky().unwrap().unpack();
     (0..n)
         .map(|_| {
             let theta = prior.mean() + &factor * normal(rng, D);
-            let mut group = GroupStatistics::new(D);
+            let mut group = PooledGroupEstimate::new(D);
             for _ in 0..rng.random_range(1..6) {
                 let seen: Vec<usize> = match rng.random_range(0..3) {
                     0 => (0..3).collect(),
@@ -121,7 +121,7 @@ fn exact_complete_observations_give_the_sample_moments() {
     let groups: Vec<_> = samples
         .iter()
         .map(|sample| {
-            let mut group = GroupStatistics::new(D);
+            let mut group = PooledGroupEstimate::new(D);
             group.observe(&[0, 1, 2, 3, 4, 5], sample.as_slice(), &[0.0; D]).unwrap();
             group
         })
@@ -145,7 +145,7 @@ fn silent_groups_change_nothing() {
     let mut groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
     let params = HierarchicalGaussianParams { covariance_prior: hyperprior(4.0), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
-    groups.push(GroupStatistics::new(D));
+    groups.push(PooledGroupEstimate::new(D));
     assert_eq!(fit_hierarchical(&groups, &params).unwrap(), fit);
 }
 
@@ -153,7 +153,7 @@ fn silent_groups_change_nothing() {
 fn what_determines_no_gaussian_is_refused() {
     let groups = draw_groups(&known_prior(1), D, &mut ChaCha8Rng::seed_from_u64(1));
     let flat = HierarchicalGaussianParams::default();
-    let step = |groups: &[GroupStatistics], params: &HierarchicalGaussianParams| match fit_hierarchical(
+    let step = |groups: &[PooledGroupEstimate], params: &HierarchicalGaussianParams| match fit_hierarchical(
         groups, params,
     ) {
         Err(IterationError::Step(error)) => error,
@@ -162,10 +162,13 @@ fn what_determines_no_gaussian_is_refused() {
     assert!(matches!(step(&groups, &flat), GaussianError::TooFew { needed: 7, got: 6, .. }));
     assert!(matches!(step(&[], &flat), GaussianError::Empty { .. }));
     let with_prior = HierarchicalGaussianParams { covariance_prior: hyperprior(1.0), ..flat.clone() };
-    assert!(matches!(step(&[GroupStatistics::new(2)], &with_prior), GaussianError::Dimension { .. }));
-    assert_eq!(step(&[GroupStatistics::new(D)], &with_prior), GaussianError::Unobserved { coordinate: 0 });
+    assert!(matches!(step(&[PooledGroupEstimate::new(2)], &with_prior), GaussianError::Dimension { .. }));
+    assert_eq!(
+        step(&[PooledGroupEstimate::new(D)], &with_prior),
+        GaussianError::Unobserved { coordinate: 0 }
+    );
     // The same exact vector again and again has no covariance.
-    let mut group = GroupStatistics::new(1);
+    let mut group = PooledGroupEstimate::new(1);
     group.observe(&[0], &[2.0], &[0.0]).unwrap();
     assert!(matches!(step(&vec![group; 5], &flat), GaussianError::NotPositiveDefinite { .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -187,7 +190,7 @@ fn both_hyperpriors_speak_where_no_group_does() {
         mean_prior: Some(MeanPrior { mean: DVector::from_element(D, 3.0), pseudo_groups: 1.0 }),
         ..Default::default()
     };
-    let fit = fit_hierarchical(&[GroupStatistics::new(D)], &params).unwrap();
+    let fit = fit_hierarchical(&[PooledGroupEstimate::new(D)], &params).unwrap();
     assert_eq!(fit.gaussian.mean(), &DVector::from_element(D, 3.0));
     // Ψ / (ν + d + 2): N(m, Σ/κ) adds one |Σ|^(-1/2).
     let (groups, mode) = (PSEUDO_GROUPS, 4.0);

@@ -5,14 +5,14 @@
 use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, dvector};
 use wayfix_gaussian_core::{
-    GroupStatistics, HierarchicalGaussianParams, InverseWishart, MeanPrior, fit_hierarchical,
+    HierarchicalGaussianParams, InverseWishart, MeanPrior, PooledGroupEstimate, fit_hierarchical,
 };
 
 /// Seven groups of one to three observations of three coordinates, a quarter of them missing: the script's formula.
-fn groups() -> Vec<GroupStatistics> {
+fn groups() -> Vec<PooledGroupEstimate> {
     (0..7_usize)
         .map(|j| {
-            let mut group = GroupStatistics::new(3);
+            let mut group = PooledGroupEstimate::new(3);
             for i in 0..1 + j % 3 {
                 let (t, i_real) = (j as f64, i as f64);
                 let s = 0.7 * t + 1.3 * i_real;

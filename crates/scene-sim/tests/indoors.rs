@@ -149,9 +149,9 @@ fn calibrated_wheels_drift_by_what_is_said_of_them() {
         OmniCameraParams { n_columns: 4, n_rings: 1, rays_per_pixel: [1, 1], ..OmniCameraParams::default() };
     let (mut squares, mut expected) = (0.0, 0.0);
     for seed in 0..N {
-        let drive: WheeledRobotParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
+        let robot: WheeledRobotParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
         let steps =
-            tour(&building, IndoorDriveParams { drive, camera, ..IndoorDriveParams::default() }, 100.0, seed);
+            tour(&building, IndoorDriveParams { robot, camera, ..IndoorDriveParams::default() }, 100.0, seed);
         let headings = [0, steps.len() - 1].map(|k| steps[k].pose.heading());
         let turned: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.heading()).sum();
         squares += Pose2::new(0.0, 0.0, turned - (headings[1] - headings[0])).heading().powi(2);
@@ -176,14 +176,14 @@ fn rearranging_nothing_changes_nothing() {
 #[test]
 fn switching_changes_the_lab_and_leaves_the_default_alone() {
     let building = Laboratory::draw(&mut rng()).building();
-    let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorDriveParams::default().drive };
+    let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorDriveParams::default().robot };
     let change = |mean_lamp_switching_s| {
         let ambient_light = AmbientLightParams {
             mean_lamp_switching_s,
             daylight_log_sigma: 0.0,
             ..AmbientLightParams::default()
         };
-        let params = IndoorDriveParams { drive: creeping, ambient_light, ..IndoorDriveParams::default() };
+        let params = IndoorDriveParams { robot: creeping, ambient_light, ..IndoorDriveParams::default() };
         let route = building.aisles().tour(1.0, &mut rng()).expect("there are aisles");
         let drive = IndoorDrive::new(&building, route, params, RandomStreams::new(rng())).expect("sound");
         let views: Vec<RgbPicture> = drive.take(120).map(|step| step.view).collect();
@@ -253,7 +253,7 @@ fn numbers_without_a_meaning_are_refused() {
     let standing = WheeledRobotParams { speed_mps: 0.0, ..WheeledRobotParams::default() };
     let params = IndoorDriveParams::default();
     for bad in [
-        IndoorDriveParams { drive: standing, ..params },
+        IndoorDriveParams { robot: standing, ..params },
         IndoorDriveParams { view_period_ms: 505, ..params },
         IndoorDriveParams { view_period_ms: 0, ..params },
         IndoorDriveParams { n_people: 1 << 20, ..params },

@@ -37,7 +37,7 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
 
 fn drive(
     route: Route,
-    drive: WheeledRobotParams,
+    robot: WheeledRobotParams,
     sensor: Option<Box<dyn SimulatedSensor>>,
     duration_ms: u64,
 ) -> Vec<Record> {

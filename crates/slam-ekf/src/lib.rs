@@ -47,7 +47,7 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, MonobotMotion, MonobotSensor,
+    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, LineDistanceSensor, MonobotMotion,
     MotionWithHeadingDrift, MotionWithRangeScale, MountedSensor, OdometryMotion, PLANAR_SYMMETRIES,
     PoseWithHeadingDrift, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
     RelativePosition, RelativePositionSensor, SensorWithHeadingDrift, VelocityControl, VelocityMotion,

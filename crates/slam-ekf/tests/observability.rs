@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, Pose2, SensorModel};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIdAssociation, LandmarkId, MonobotMotion, MonobotSensor, Observation, OdometryMotion,
+    EkfSlam, KnownIdAssociation, LandmarkId, LineDistanceSensor, MonobotMotion, Observation, OdometryMotion,
     OutlierRule, RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams, laws,
     observability::ObservabilityRecorder,
 };
@@ -105,7 +105,7 @@ fn accumulated_information_has_the_rank_of_one_linearization() {
 #[test]
 fn the_monobot_has_the_information_of_the_paper() {
     // Eqs. 15 and 17: J = Σ 1/s (1, −1)ᵀ(1, −1); singular in (1, 1), whatever the number of steps.
-    let sensor = MonobotSensor { sigma: 1.0, sigma_per_meter: 0.0 };
+    let sensor = LineDistanceSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };
     let start = (Vector1::new(0.0), Matrix1::new(1.0));
     let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start.0, start.1).unwrap();
@@ -130,7 +130,7 @@ fn the_monobot_has_the_information_of_the_paper() {
 
 #[test]
 fn the_monobot_keeps_the_laws() {
-    let line = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.1 };
+    let line = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.1 };
     laws::landmark_model(&line, &[Vector1::new(-1.0)], &[Vector1::new(1.0), Vector1::new(-3.0)]).unwrap();
 }
 

@@ -35,7 +35,7 @@ pub use distribution::{
     LearnedColorDynamics, PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{HeadSizeFromSearch, HeadSizeSource, HeadTracker, HeadTrackerParams};
+pub use head::{HeadSizeFromSearch, HeadTracker, HeadTrackerParams, RelativeHeadSizeSource};
 pub use image::RgbImage;
 pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
 pub use pixel_rect::PixelRect;

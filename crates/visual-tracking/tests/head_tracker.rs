@@ -6,8 +6,8 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BoundingBox, HeadSizeSource, HeadTracker, HeadTrackerParams, PixelMask, RgbImage, TrackStatus, Tracker,
-    TrackingError,
+    BoundingBox, HeadTracker, HeadTrackerParams, PixelMask, RelativeHeadSizeSource, RgbImage, TrackStatus,
+    Tracker, TrackingError,
 };
 
 const WIDTH: usize = 160;
@@ -82,7 +82,7 @@ fn colours_that_adapt_follow_the_light() {
 #[test]
 fn the_scale_is_searched_or_comes_from_outside() {
     struct Stereo;
-    impl HeadSizeSource for Stereo {
+    impl RelativeHeadSizeSource for Stereo {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(1.5)
         }
@@ -102,7 +102,7 @@ fn the_scale_is_searched_or_comes_from_outside() {
 #[test]
 fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     struct Broken;
-    impl HeadSizeSource for Broken {
+    impl RelativeHeadSizeSource for Broken {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(f64::NAN)
         }

@@ -56,7 +56,7 @@ pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Lapped> {
     let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
-    let params = IndoorDriveParams { drive: robot(seed), ..IndoorDriveParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), ..IndoorDriveParams::default() };
     let trip = SimulatedDrive::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
     let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, published) = (with(setup.localizer)?, with(LocalizerParams::as_published())?);

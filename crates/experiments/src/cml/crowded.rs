@@ -37,7 +37,7 @@ pub fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 3]> {
     let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let through = |n_people, params: LocalizerParams| {
-        let drive = IndoorDriveParams { drive: robot(seed), n_people, ..IndoorDriveParams::default() };
+        let drive = IndoorDriveParams { robot: robot(seed), n_people, ..IndoorDriveParams::default() };
         let trip = tour(&building, setup.length_m, drive, (seed, 0))?;
         localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };

@@ -73,7 +73,7 @@ pub fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 /// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as published.
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 6]> {
     let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
-    let params = IndoorDriveParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
     let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
     let later = store.rearranged(setup.rearranged_share, &mut Draw::Rearranged(1).rng(seed))?;
     let trip = |drive| tour(&later.building(), setup.length_m, params, (seed, drive));

@@ -77,7 +77,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 4
     let ambient_light =
         AmbientLightParams { mean_lamp_switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
     let params =
-        IndoorDriveParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorDriveParams::default() };
+        IndoorDriveParams { robot: robot(seed), ambient_light, n_people: 1, ..IndoorDriveParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |params: LocalizerParams, forgetting_mode| {

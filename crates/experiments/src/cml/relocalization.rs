@@ -117,7 +117,7 @@ fn in_stores(
     let courses = over_seeds(&stores, seed, |seed| {
         let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
         let params =
-            IndoorDriveParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
+            IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
         let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
         let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
         let n_runs = RUNS_PER_STORE.min(setup.n_seeds);
@@ -135,7 +135,7 @@ fn away(
 ) -> Result<SimulatedDrive> {
     let mut rng = Draw::Visit(visit).rng(seed);
     let route = known_route(building, map, length_m, &mut rng)?;
-    let params = IndoorDriveParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
     let mut trip = SimulatedDrive::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
     let mut travelled_m = 0.0;
     trip.steps.retain(|step| {

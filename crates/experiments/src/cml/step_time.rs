@@ -29,7 +29,7 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let shape =
         RetailStoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..RetailStoreParams::home_store() };
     let building = RetailStore::draw(shape, &mut Draw::World.rng(seed))?.building();
-    let params = IndoorDriveParams { drive: robot(seed), n_people: 20, ..IndoorDriveParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: 20, ..IndoorDriveParams::default() };
     let learned = tour(&building, setup.length_m, params, (seed, 0))?;
     let mut again = tour(&building, 0.25 * N_STEPS as f64, params, (seed, 1))?;
     again.steps.truncate(N_STEPS);

@@ -82,7 +82,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Vec<Day>> {
         ..RetailStoreParams::home_store()
     };
     let mut store = RetailStore::draw(shape, &mut Draw::World.rng(seed))?;
-    let params = IndoorDriveParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
     let mut localizers =
         [setup.localizer, LocalizerParams::as_published()].map(|params| (params, PanoramaMap::default()));
     let mut days = Vec::new();

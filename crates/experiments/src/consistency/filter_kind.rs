@@ -23,7 +23,7 @@ impl ComparedFilter {
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "standard",
-            Self::Anchored => "anchored",
+            Self::Anchored => "known_landmarks",
             Self::FirstEstimates => "first_estimates",
             Self::Invariant => "invariant",
         }

@@ -128,7 +128,7 @@ impl CorridorLaps {
             n_unknown_codes: 0,
             other_robots: Vec::new(),
             route: RouteParams::RoundedRectangle(around),
-            drive: WheeledRobotParams {
+            robot: WheeledRobotParams {
                 speed_mps: SPEED_MPS,
                 acceleration_mps2: 2.0,
                 lookahead_m: 2.0,

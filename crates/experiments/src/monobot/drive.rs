@@ -2,7 +2,7 @@ use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, MonobotMotion, MonobotSensor,
+    EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, LineDistanceSensor, MonobotMotion,
     Observation, SlamParams, observability::ObservabilityRecorder,
 };
 
@@ -55,7 +55,7 @@ pub(crate) fn plain_filter() -> SlamParams {
 /// # Errors
 /// Returns an error if the filter refuses a simulated measurement.
 pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: WorldReference) -> Result<MonobotDrive> {
-    let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_sigma_share };
+    let sensor = LineDistanceSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_sigma_share };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_sigma_share };
     let camera = FixedPositionSensor(params.external_position_sigma_m);
     let mut slam = EkfSlam::new(sensor, plain_filter(), Vector1::new(run.positions[0]))?;
@@ -89,7 +89,7 @@ fn observations(run: &MonobotRun, k: usize, reference: WorldReference) -> Vec<Ob
 }
 
 /// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a measurement of the first landmark alone; `None` before it is in the map.
-fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
+fn gains(slam: &EkfSlam<LineDistanceSensor>, distance: Option<f64>) -> [f64; 2] {
     use wayfix_slam_ekf::LandmarkModel;
     let (Some(distance), true) = (distance, slam.contains(LandmarkId(0))) else { return [f64::NAN; 2] };
     let p = slam.covariance();
@@ -99,7 +99,7 @@ fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
 }
 
 fn step(
-    slam: &EkfSlam<MonobotSensor>,
+    slam: &EkfSlam<LineDistanceSensor>,
     true_position: f64,
     true_landmark: f64,
     gains: [f64; 2],

@@ -1,7 +1,7 @@
 use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIdAssociation, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, LineDistanceSensor, MonobotMotion, Observation, SlamParams,
     observability::ObservabilityRecorder,
 };
 
@@ -12,7 +12,7 @@ use wayfix_slam_ekf::{
 /// # Errors
 /// Returns an error if the filter refuses, which it has no reason to.
 pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
-    let sensor = MonobotSensor { sigma: 1.0, sigma_per_meter: 0.0 };
+    let sensor = LineDistanceSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };
     let start = (Vector1::zeros(), Matrix1::identity());
     let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start.0, start.1)?;

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::posterior::GroupPosterior;
 use crate::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalGaussianParams, MeanPrior, cholesky, symmetrize,
+    Gaussian, GaussianError, HierarchicalGaussianParams, MeanPrior, PooledGroupEstimate, cholesky, symmetrize,
 };
 
 /// The expected sufficient statistics of the groups under $`(μ, Σ)`$, summed, and $`\log p(μ, Σ, y)`$.
@@ -19,7 +19,7 @@ pub(super) struct Expectation {
 impl Expectation {
     /// The expectation step, with $`θ_j`$ integrated out in closed form.
     pub(super) fn new(
-        groups: &[&GroupStatistics],
+        groups: &[&PooledGroupEstimate],
         params: &HierarchicalGaussianParams,
         estimate: &Gaussian<DVector<f64>>,
     ) -> Result<Self, GaussianError> {

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::em::Expectation;
 use crate::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalGaussianParams, IterationError,
+    Gaussian, GaussianError, HierarchicalGaussianParams, IterationError, PooledGroupEstimate,
     gaussian::check_dimension,
 };
 
@@ -31,8 +31,8 @@ impl HierarchicalGaussianFit {
 /// Where much is missing there may be several optima; this finds the one above independent coordinates, from where it starts.
 ///
 /// ```
-/// use wayfix_gaussian_core::{GroupStatistics, HierarchicalGaussianParams, fit_hierarchical};
-/// let mut groups = vec![GroupStatistics::new(2); 4];
+/// use wayfix_gaussian_core::{PooledGroupEstimate, HierarchicalGaussianParams, fit_hierarchical};
+/// let mut groups = vec![PooledGroupEstimate::new(2); 4];
 /// for (group, values) in groups.iter_mut().zip([[1.0, 1.0], [3.0, 2.0], [1.0, 2.0], [3.0, 3.0]]) {
 ///     group.observe(&[0, 1], &values, &[0.0, 0.0])?;
 /// }
@@ -47,7 +47,7 @@ impl HierarchicalGaussianFit {
 /// hyperprior of $`Σ`$ when there are no more groups than coordinates ([`GaussianError::TooFew`]: the covariance would be singular) or a
 /// covariance becomes singular on the way; without a hyperprior of $`μ`$ when no group shows some coordinate.
 pub fn fit_hierarchical(
-    groups: &[GroupStatistics],
+    groups: &[PooledGroupEstimate],
     params: &HierarchicalGaussianParams,
 ) -> Result<HierarchicalGaussianFit, IterationError<Box<HierarchicalGaussianFit>>> {
     let groups = check(groups, params)?;
@@ -76,9 +76,9 @@ pub fn fit_hierarchical(
 
 /// The groups with observations, if they and the hyperpriors together determine a Gaussian.
 fn check<'a>(
-    groups: &'a [GroupStatistics],
+    groups: &'a [PooledGroupEstimate],
     params: &HierarchicalGaussianParams,
-) -> Result<Vec<&'a GroupStatistics>, GaussianError> {
+) -> Result<Vec<&'a PooledGroupEstimate>, GaussianError> {
     let Some(first) = groups.first() else { return Err(GaussianError::Empty { what: "groups" }) };
     let dimension = first.dimension();
     params.check(dimension)?;
@@ -101,7 +101,7 @@ fn check<'a>(
 
 /// Independent coordinates, each with the moments of its own pooled observations and of the hyperpriors.
 fn start(
-    groups: &[&GroupStatistics],
+    groups: &[&PooledGroupEstimate],
     params: &HierarchicalGaussianParams,
 ) -> Result<Gaussian<DVector<f64>>, GaussianError> {
     let dimension = groups.first().map_or_else(

@@ -70,14 +70,14 @@ impl<'a> IndoorDrive<'a> {
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate()?;
-        let step_m = params.drive.speed_mps * f64::from(params.view_period_ms) * 1e-3;
+        let step_m = params.robot.speed_mps * f64::from(params.view_period_ms) * 1e-3;
         check::positive("way between two views (m)", step_m)?;
         let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(RandomStreamPurpose::Crowd));
         let ambient_light =
             AmbientLight::new(params.ambient_light, building.n_lamps, building.n_curtains, &mut streams);
         Ok(Self {
             building,
-            robot: DifferentialDrive::new(params.drive, route.at(0.0))?,
+            robot: DifferentialDrive::new(params.robot, route.at(0.0))?,
             driver: PurePursuit::default(),
             wheels: WheelOdometry::new(params.odometry())?,
             view_renderer: ViewRenderer::new(params.camera)?,
@@ -93,7 +93,7 @@ impl<'a> IndoorDrive<'a> {
 
     fn advance(&mut self, seconds: f64) {
         let pose = self.robot.pose();
-        let (linear, angular) = self.driver.command(seconds, &self.route, &pose, &self.params.drive);
+        let (linear, angular) = self.driver.command(seconds, &self.route, &pose, &self.params.robot);
         self.robot.step(seconds, linear, angular, &mut self.streams);
         self.milliseconds += STEP_MS;
     }

@@ -10,7 +10,7 @@ use crate::{SimulationError, check};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndoorDriveParams {
     /// The robot; [`calibrated_robot`] draws one. Default: 0.5 m/s, wheels exactly as built, slip of 0.1 %.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Time between two views, a multiple of 10 ms. Default 500: a step of 0.25 m.
     pub view_period_ms: u32,
     /// The camera.
@@ -24,7 +24,7 @@ pub struct IndoorDriveParams {
 impl Default for IndoorDriveParams {
     fn default() -> Self {
         Self {
-            drive: robot([0.0; 2]),
+            robot: robot([0.0; 2]),
             view_period_ms: 500,
             camera: OmniCameraParams::default(),
             ambient_light: AmbientLightParams::default(),
@@ -39,7 +39,7 @@ impl IndoorDriveParams {
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimulationError> {
-        self.drive.validate()?;
+        self.robot.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
         check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
         self.camera.validate()?;
@@ -52,8 +52,8 @@ impl IndoorDriveParams {
         WheelOdometryParams {
             encoding: OdometryEncoding::Increment,
             period_ms: self.view_period_ms,
-            wheel_radius_m: self.drive.wheel_radius_m,
-            wheel_separation_m: self.drive.wheel_separation_m,
+            wheel_radius_m: self.robot.wheel_radius_m,
+            wheel_separation_m: self.robot.wheel_separation_m,
             ..WheelOdometryParams::default()
         }
     }

@@ -35,7 +35,7 @@ fn loop_known() -> PlanarDriveParams {
         n_unknown_codes: 0,
         other_robots: Vec::new(),
         route: RouteParams::Circle(CircleRoute { radius_m: 10.0 }),
-        drive: WheeledRobotParams::default(),
+        robot: WheeledRobotParams::default(),
         odometry: OdometryParams::Gaussian(GaussianOdometryParams::default()),
         sensor: RangeBearingParams { max_range_m: 7.0, ..RangeBearingParams::default() },
         duration_ms: 250_000,
@@ -64,7 +64,7 @@ fn office_velocity() -> PlanarDriveParams {
         n_unknown_codes: 2,
         other_robots: [2, 3].map(|id| OtherRobotParams { id, route: wander(2.0), speed_mps: 0.12 }).to_vec(),
         route: wander(2.2),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.16,
             lookahead_m: 0.2,
             left_radius_error: 0.008,
@@ -114,7 +114,7 @@ fn rough_known() -> PlanarDriveParams {
             width_m: 14.0,
             corner_radius_m: 2.0,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.003,
             right_radius_error: -0.001,
@@ -171,7 +171,7 @@ fn long_loop() -> PlanarDriveParams {
             width_m: 12.0,
             corner_radius_m: 1.5,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0005,
             right_radius_error: -0.0003,

@@ -17,7 +17,7 @@ pub struct LaserDriveParams {
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Laser.
@@ -37,7 +37,7 @@ impl LaserDriveParams {
         let route = self.route.build(streams.of(RandomStreamPurpose::Route))?;
         let world = PlanarWorld::new(self.layout.build(&route, streams.of(RandomStreamPurpose::Landmarks))?);
         let simulation = Simulation {
-            drive: self.drive,
+            robot: self.robot,
             duration_ms: self.duration_ms,
             truth_period_ms: self.truth_period_ms,
             true_walls: true,
@@ -67,7 +67,7 @@ pub(super) fn office_laser() -> Scenario {
             width_m: 17.4,
             corner_radius_m: 1.0,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0008,
             right_radius_error: -0.0005,

@@ -23,7 +23,7 @@ pub struct PlanarDriveParams {
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Sensor.
@@ -68,7 +68,7 @@ impl PlanarDriveParams {
             plan,
         };
         let simulation = Simulation {
-            drive: self.drive,
+            robot: self.robot,
             duration_ms: self.duration_ms,
             truth_period_ms: self.truth_period_ms,
             ..Simulation::new(&world, route)

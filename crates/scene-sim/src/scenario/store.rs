@@ -47,7 +47,7 @@ impl RetailStoreLapsParams {
     pub fn simulate(&self, streams: RandomStreams) -> Result<Vec<Record>, SimulationError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.store_seed);
         let building = RetailStore::draw(self.store, &mut rng)?.building();
-        let params = IndoorDriveParams { drive: calibrated_robot(&mut rng), ..self.drive };
+        let params = IndoorDriveParams { robot: calibrated_robot(&mut rng), ..self.drive };
         let route = building.aisles().laps(self.n_laps, &mut rng)?;
         let mut records = Vec::new();
         for step in IndoorDrive::new(&building, route, params, streams)? {

@@ -23,7 +23,7 @@ where
     /// ```
     /// use nalgebra::{Matrix1, Vector1};
     /// use wayfix_estimation_traits::SensorModel;
-    /// use wayfix_slam_ekf::{EkfSlam, MonobotSensor, SlamParams};
+    /// use wayfix_slam_ekf::{EkfSlam, LineDistanceSensor, SlamParams};
     ///
     /// /// Measures the position of the robot on its line, with a standard deviation in metres.
     /// struct Camera(f64);
@@ -34,7 +34,7 @@ where
     ///     fn noise(&self, _: &Vector1<f64>) -> Matrix1<f64> { Matrix1::new(self.0 * self.0) }
     /// }
     ///
-    /// let sensor = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.0 };
+    /// let sensor = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.0 };
     /// let start = (Vector1::new(0.0), Matrix1::new(1.0));
     /// let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start.0, start.1)?;
     /// slam.update_robot(&Camera(1.0), &Vector1::new(1.0))?;

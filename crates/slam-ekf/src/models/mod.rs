@@ -18,7 +18,7 @@ pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use correlated_noise::CorrelatedNoise;
 pub use drifting::{MotionWithHeadingDrift, PoseWithHeadingDrift, SensorWithHeadingDrift};
 pub use increment::OdometryMotion;
-pub use monobot::{MonobotMotion, MonobotSensor};
+pub use monobot::{LineDistanceSensor, MonobotMotion};
 pub use mounted::MountedSensor;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};

@@ -21,7 +21,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 /// ```
 /// use nalgebra::Vector1;
 /// use wayfix_slam_ekf::{*, observability::ObservabilityRecorder};
-/// let sensor = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.0 };
+/// let sensor = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.0 };
 /// let mut slam = EkfSlam::new(sensor, SlamParams::default(), Vector1::new(-1.0))?;
 /// let mut recorder = ObservabilityRecorder::new(&slam);
 /// let seen = |id, distance| Observation { label: Some(LandmarkId(id)), measurement: Vector1::new(distance) };

@@ -13,7 +13,7 @@ where
         ObservationOutcome::Rejected { .. } => "observation_rejected_by_gate",
         ObservationOutcome::Initialized { .. } => "new_landmark",
         ObservationOutcome::Restarted { .. } => "tentative_landmark_restarted",
-        ObservationOutcome::Ambiguous => "observation_ambiguous",
+        ObservationOutcome::Ambiguous => "observation_neither_known_nor_new",
         ObservationOutcome::Unlabelled => "observation_without_identity",
         ObservationOutcome::Duplicate { .. } => "observation_duplicate",
         ObservationOutcome::Unusable => "observation_unusable",

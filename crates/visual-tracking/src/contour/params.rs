@@ -57,7 +57,7 @@ pub struct ColorContourTrackerParams {
     /// $`σ`$ of the weights. Default 0.15.
     pub agreement_sigma: f64,
     /// $`μ`$ of the predicted area: share of its last change that is extrapolated. Default 0.5.
-    pub area_extrapolation: f64,
+    pub extrapolated_area_change_share: f64,
     /// Weight of the mean area of the last seconds in the predicted area, against gradual shrinking or growing of the contour; 0 as in the
     /// paper. Default 0.3.
     pub mean_area_weight: f64,
@@ -95,7 +95,7 @@ impl Default for ColorContourTrackerParams {
             max_color_points: 512,
             agreement_weights: [1.0, 1.0, 0.5],
             agreement_sigma: 0.15,
-            area_extrapolation: 0.5,
+            extrapolated_area_change_share: 0.5,
             mean_area_weight: 0.3,
             max_euler_number_deviation: 10.0,
             morphology_radius: 1,
@@ -116,7 +116,7 @@ impl ColorContourTrackerParams {
         Self {
             min_target_to_background_ratio: 0.0,
             previous_colors_weight: 0.0,
-            area_extrapolation: 1.0,
+            extrapolated_area_change_share: 1.0,
             mean_area_weight: 0.0,
             share_from_last_measurement: 0.0,
             color_bins: [16; 3],
@@ -145,7 +145,7 @@ impl ColorContourTrackerParams {
         for (what, value) in [
             ("min_target_to_background_ratio", self.min_target_to_background_ratio),
             ("min_edge_contrast", self.min_edge_contrast),
-            ("area_extrapolation", self.area_extrapolation),
+            ("extrapolated_area_change_share", self.extrapolated_area_change_share),
         ] {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }

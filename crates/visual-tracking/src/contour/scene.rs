@@ -47,7 +47,8 @@ impl<'a> Scene<'a> {
             .dilated(StructuringElement::Square { radius: (0.25 * radius).max(LEAST_MARGIN / 2.0) as usize });
         let mut background = region.shares(&near.not());
         background.iter_mut().for_each(|share| *share *= params.min_target_to_background_ratio as f32);
-        let expected_area = reference.expected_area(params.area_extrapolation, params.mean_area_weight);
+        let expected_area =
+            reference.expected_area(params.extrapolated_area_change_share, params.mean_area_weight);
         Ok(Some(Self {
             params,
             quantizer,

@@ -50,7 +50,7 @@ pub struct CorrelationTrackerParams {
     /// Minimum share of the typical response for recognition; three fifths of it suffice for a lost target. Default 0.5.
     pub min_recognition_response_share: f64,
     /// Share of the typical colour agreement below which a target must also be recognized by its shape. Default 0.5.
-    pub min_color_agreement_share: f64,
+    pub shape_check_color_agreement_share: f64,
     /// Images after which a changed target is accepted, if its old appearance is not found in another place. Default 60.
     pub accept_change_after_n_frames: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
@@ -77,7 +77,7 @@ impl Default for CorrelationTrackerParams {
             learn_above_psr: 12.0,
             recognize_above_psr: 15.0,
             min_recognition_response_share: 0.5,
-            min_color_agreement_share: 0.5,
+            shape_check_color_agreement_share: 0.5,
             accept_change_after_n_frames: 60,
             n_search_places: 2,
         }
@@ -111,7 +111,7 @@ impl CorrelationTrackerParams {
             ("color_histogram_learning_rate", self.color_histogram_learning_rate),
             ("scale_filter_learning_rate", self.scale_filter_learning_rate),
             ("min_recognition_response_share", self.min_recognition_response_share),
-            ("min_color_agreement_share", self.min_color_agreement_share),
+            ("shape_check_color_agreement_share", self.shape_check_color_agreement_share),
         ] {
             probability(what, value)?;
         }

@@ -213,7 +213,7 @@ impl CorrelationTracker {
     }
 
     fn is_typical(&self, agreement: f64) -> bool {
-        agreement >= self.params.min_color_agreement_share * self.typical_color_agreement
+        agreement >= self.params.shape_check_color_agreement_share * self.typical_color_agreement
     }
 
     fn agreement(&self, sample: &WindowSample) -> f64 {

@@ -9,5 +9,5 @@ mod surroundings;
 mod tracker;
 
 pub use params::HeadTrackerParams;
-pub use scale_source::{HeadSizeFromSearch, HeadSizeSource};
+pub use scale_source::{HeadSizeFromSearch, RelativeHeadSizeSource};
 pub use tracker::HeadTracker;

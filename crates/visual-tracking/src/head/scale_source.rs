@@ -3,10 +3,10 @@ use crate::RgbImage;
 /// Source of the size of the head, for example a stereo camera that measures its distance.
 ///
 /// ```
-/// use wayfix_visual_tracking::{RgbImage, HeadSizeSource};
+/// use wayfix_visual_tracking::{RgbImage, RelativeHeadSizeSource};
 /// /// Distances that a stereo camera measured, picture after picture, in metres.
 /// struct Stereo(Vec<f64>);
-/// impl HeadSizeSource for Stereo {
+/// impl RelativeHeadSizeSource for Stereo {
 ///     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
 ///         let first = 2.0;
 ///         self.0.pop().map(|distance| first / distance)
@@ -16,7 +16,7 @@ use crate::RgbImage;
 /// assert_eq!(Stereo(vec![4.0]).scale(&picture, [0.0, 0.0]), Some(0.5));
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
-pub trait HeadSizeSource {
+pub trait RelativeHeadSizeSource {
     /// The size of the head in `picture` beside that in the first one, or `None` where it is to be searched; `center` is where the head
     /// was, in pixels.
     fn scale(&mut self, picture: &RgbImage, center: [f64; 2]) -> Option<f64>;
@@ -26,7 +26,7 @@ pub trait HeadSizeSource {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HeadSizeFromSearch;
 
-impl HeadSizeSource for HeadSizeFromSearch {
+impl RelativeHeadSizeSource for HeadSizeFromSearch {
     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
         None
     }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use super::bimodal::BimodalHistogram;
 use super::edge::GradientField;
 use super::params::HeadTrackerParams;
-use super::scale_source::{HeadSizeFromSearch, HeadSizeSource};
+use super::scale_source::{HeadSizeFromSearch, RelativeHeadSizeSource};
 use super::search::{Candidate, Search};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
@@ -25,7 +25,7 @@ const N_OUTLINE: usize = 48;
 /// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head [Eq. 28], updated
 /// incrementally between ellipses, and by the gradient across its rim. Both are scaled to their range; the highest sum wins. The colours adapt
 /// [Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more frequent around the
-/// ellipse than in it are excluded. The size comes from a [`HeadSizeSource`] or from the search.
+/// ellipse than in it are excluded. The size comes from a [`RelativeHeadSizeSource`] or from the search.
 /// ```
 /// use rand::SeedableRng;
 /// use rand_chacha::ChaCha8Rng;
@@ -121,9 +121,9 @@ impl HeadTracker {
     }
 }
 
-impl<S: HeadSizeSource> HeadTracker<S> {
+impl<S: RelativeHeadSizeSource> HeadTracker<S> {
     /// Replaces the source of the scale.
-    pub fn with_scale_source<T: HeadSizeSource>(self, scale_source: T) -> HeadTracker<T> {
+    pub fn with_scale_source<T: RelativeHeadSizeSource>(self, scale_source: T) -> HeadTracker<T> {
         let Self { params, picture_size, quantizer, model, base, state, .. } = self;
         HeadTracker { params, picture_size, quantizer, model, scale_source, base, state }
     }
@@ -207,7 +207,7 @@ impl<S: HeadSizeSource> HeadTracker<S> {
     }
 }
 
-impl<S: HeadSizeSource> Tracker for HeadTracker<S> {
+impl<S: RelativeHeadSizeSource> Tracker for HeadTracker<S> {
     fn track<R: Rng + ?Sized>(
         &mut self,
         picture: &RgbImage,

@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 208] = [
+const RENAMED: [(&str, &str); 210] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -10,9 +10,10 @@ const RENAMED: [(&str, &str); 208] = [
     ("adapt_above", "adapt_above_intersection"),
     ("adaptation", "color_adaptation_rate"),
     ("adapts", "adapts_colors"),
-    ("alike_share", "min_color_agreement_share"),
+    ("alike_share", "shape_check_color_agreement_share"),
     ("anchored_share", "share_from_last_measurement"),
-    ("area_gain", "area_extrapolation"),
+    ("area_extrapolation", "extrapolated_area_change_share"),
+    ("area_gain", "extrapolated_area_change_share"),
     ("area_memory", "mean_area_weight"),
     ("background", "background_model"),
     ("background_odds", "min_target_to_background_ratio"),
@@ -25,7 +26,7 @@ const RENAMED: [(&str, &str); 208] = [
     ("certainly_new", "new_landmark_nis"),
     ("choice", "action_selection"),
     ("clutter", "mean_clutter"),
-    ("color_agreement_share", "min_color_agreement_share"),
+    ("color_agreement_share", "shape_check_color_agreement_share"),
     ("color_histogram_rate", "color_histogram_learning_rate"),
     ("color_memory", "previous_colors_weight"),
     ("color_rate", "color_histogram_learning_rate"),
@@ -114,6 +115,7 @@ const RENAMED: [(&str, &str); 208] = [
     ("max_saturated", "max_saturated_share"),
     ("max_steps", "max_iterations"),
     ("mean_noise", "mean_color_variance"),
+    ("min_color_agreement_share", "shape_check_color_agreement_share"),
     ("min_effective_share", "tempering_min_ess_share"),
     ("min_particles", "max_particles"),
     ("most", "max_components"),

@@ -26,7 +26,7 @@ impl Drive {
         let mut rng = ChaCha8Rng::seed_from_u64(WORLD_SEED);
         let building = RetailStore::draw(RetailStoreParams::area(), &mut rng).unwrap().building();
         let route = building.aisles().laps(LAPS, &mut rng).unwrap();
-        let params = IndoorDriveParams { drive: calibrated_robot(&mut rng), ..IndoorDriveParams::default() };
+        let params = IndoorDriveParams { robot: calibrated_robot(&mut rng), ..IndoorDriveParams::default() };
         let steps = IndoorDrive::new(&building, route, params, RandomStreams::new(rng)).unwrap();
         let frame = |step: wayfix_scene_sim::indoors::IndoorDriveStep| {
             let view = &step.view;
