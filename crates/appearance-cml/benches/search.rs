@@ -64,7 +64,7 @@ fn main() {
         };
         let (bounded, compared) = (share(|cost| cost.bounded), share(|cost| cost.compared));
         eprintln!(
-            "{size}: sketches leave {bounded:.2} %, bounds {compared:.3} %, found {:.3} %",
+            "{size}: rough bounds leave {bounded:.2} %, bounds {compared:.3} %, found {:.3} %",
             share(|cost| cost.found)
         );
         if size <= 10_000 {

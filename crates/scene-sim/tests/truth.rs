@@ -42,7 +42,7 @@ fn drive(
     duration_ms: u64,
 ) -> Vec<Record> {
     let nothing = world(&[]);
-    let simulation = Simulation { drive, duration_ms, ..Simulation::new(&nothing, route) };
+    let simulation = Simulation { robot, duration_ms, ..Simulation::new(&nothing, route) };
     let mut sensors: Vec<Box<dyn SimulatedSensor>> = sensor.into_iter().collect();
     simulation.run(&mut sensors, &mut streams(5)).expect("valid parameters")
 }

@@ -2,8 +2,7 @@ use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 
 /// A descriptor whose distance can be bounded from below for less than it costs: what an exact index needs.
 ///
-/// **Laws**, for a view `v` and a reference `r`, up to rounding: their invariants are as many and
-/// $`\lVert \mathrm{inv}(v) - \mathrm{inv}(r) \rVert`$ ≤ `r.bound(&v.probe(), enough)` ≤ `v.compare(&r).distance`, the first only where `enough` is infinite;
+/// **Laws**, for a view `v` and a reference `r`, up to rounding: `r.bound(&v.probe(), enough)` ≤ `v.compare(&r).distance`;
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
@@ -19,9 +18,6 @@ use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 /// impl LowerBoundedDistance for Grey {
 ///     type Probe = Grey;
 ///     type Table = NoLowerBoundTable;
-///     fn invariants(&self) -> Vec<f64> {
-///         vec![self.0]
-///     }
 ///     fn probe(&self) -> Grey {
 ///         self.clone()
 ///     }
@@ -42,9 +38,6 @@ pub trait LowerBoundedDistance: ViewDescriptor + Sized {
     type Probe;
     /// The first numbers of many references, side by side.
     type Table: LowerBoundTable<Self>;
-
-    /// Numbers that do not depend on the heading.
-    fn invariants(&self) -> Vec<f64>;
 
     /// This view, made ready.
     fn probe(&self) -> Self::Probe;

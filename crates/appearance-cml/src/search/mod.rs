@@ -2,14 +2,11 @@
 
 mod bound_table;
 mod bounded;
-mod box_tree;
 mod descriptor;
 mod index;
 mod linear;
 mod nearest;
-mod projection;
 mod reference_search;
-mod slot_set;
 
 pub use bound_table::{LowerBoundTable, NoLowerBoundTable};
 pub use bounded::LowerBoundedDistance;
