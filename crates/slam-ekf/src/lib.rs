@@ -19,7 +19,7 @@
 //! points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
 //! `examples/01_slam_in_a_loop.rs` is a whole filter in six steps.
 //!
-//! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]
+//! [Andrade-Cetto 2005, Sec. 2; Dissanayake et al. 2001]
 //!
 //! [predict]: EkfSlam::predict
 

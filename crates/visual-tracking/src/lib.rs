@@ -8,7 +8,7 @@
 //! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
 //! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
 //!
-//! Andrade-Cetto & Sanfeliu, *Active perception in changing light*, section 3. Pictures are [`RgbImage`]s of the crate `image`; no files are opened.
+//! Andrade-Cetto, *Perception Issues in Mobile Robotics*, section 3. Pictures are [`RgbImage`]s of the crate `image`; no files are opened.
 
 mod bounding_box;
 mod color;

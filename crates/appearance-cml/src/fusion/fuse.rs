@@ -14,7 +14,7 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 ///
 /// The uniform component gives $`w_u w_b (2π)^{3/2} |C_b|^{1/2} / V`$ and $`w_u m`$; a peak wider than the map leaves it uniform,
 /// with the share $`\sqrt{2π} σ_θ / 2π`$ of the headings. With [`MixtureWeighting::Support`] components are fused in pairs
-/// or copied, and nothing is uniform any more. [Gross et al. 2005, Eqs. 2-8]
+/// or copied, and nothing is uniform any more. [Gross et al. 2005, Eqs. 2–8, Fig. 2]
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -118,7 +118,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// $`w = w_a w_b / \hat w_a + w_b w_a / \hat w_b`$ with the sums $`\hat w`$ of the weights of the counterparts. [Gross et al. 2005, Eqs. 6-8]
+/// $`w = w_a w_b / \hat w_a + w_b w_a / \hat w_b`$ with the sums $`\hat w`$ of the weights of the counterparts. [Gross et al. 2005, Eqs. 6–8]
 fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis], pairs: &[Pair]) -> f64 {
     let of_a = pairs.iter().filter(|p| p.predicted == pair.predicted).map(|p| observed[p.observed].weight);
     let of_b = pairs.iter().filter(|p| p.observed == pair.observed).map(|p| predicted[p.predicted].weight);

@@ -9,7 +9,7 @@ use crate::{AppearanceMapError, check};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum GaussianFusionRule {
-    /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
+    /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3–5]
     WeightedIntersection,
     /// Split covariance intersection: fuses the independent parts of the covariances and intersects the rest, with the share of
     /// least determinant. [Julier & Uhlmann 2001]
@@ -26,7 +26,7 @@ pub enum GaussianFusionRule {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MixtureWeighting {
-    /// Weights of matching components add up; the others are copied. [Gross et al. 2005, Eqs. 6-8]
+    /// Weights of matching components add up; the others are copied. [Gross et al. 2005, Eqs. 6–8]
     Support,
     /// Weights are probabilities: each predicted component is integrated over the likelihood ([`fuse`](crate::fuse)).
     #[default]

@@ -12,7 +12,7 @@ use crate::{
     ReferenceId, ReferenceSearch, separation_squared,
 };
 
-/// Localizes in an appearance map, and learns it. [Gross et al. 2005]
+/// Localizes in an appearance map, and learns it. [Gross et al. 2005, Fig. 1]
 ///
 /// [`predict`](Self::predict) with each odometry increment, [`update`](Self::update) with each view. With an empty map and a known start the
 /// robot builds the map; [`teach`](Self::teach) builds one from known poses. `D` is the view, `S` the search among views, and `M` the motion

@@ -56,7 +56,7 @@ impl Belief {
         Ok(Self { state: Some(GaussianMixture::from_log_weights(moved)?), ..*self })
     }
 
-    /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2-8]
+    /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2–8]
     ///
     /// The uniform component has at least the prior probability of a kidnapping, so that a source can contradict the prediction.
     pub(super) fn fused(

@@ -10,7 +10,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
 where
     M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
 {
-    /// Learns the views that the robot has left behind. [Gross et al. 2005, Secs. 2.1 and 2.3, Eqs. 11-19]
+    /// Learns the views that the robot has left behind. [Gross et al. 2005, Secs. 2.1 and 2.3, Eqs. 11–19]
     ///
     /// A view waits until it is a match radius away: then no view that matches it can confirm its pose. It waits longer while the belief is
     /// not unimodal or the previous hypothesis may return, and is given up after the distance for which that one is kept.

@@ -38,7 +38,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
 }
 
 impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
-    /// The places that match the view. [Gross et al. 2005, Sec. 2.2, Eqs. 9-10]
+    /// The places that match the view. [Gross et al. 2005, Sec. 2.2, Eqs. 9–10]
     ///
     /// The search covers the references around the belief. It covers the whole map if the pose is unknown, or if the belief reaches far places.
     pub(super) fn match_view(

@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::{AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDistanceScale, similarity};
 use crate::{AppearanceMapError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
 
-/// The appearance map: reference views, and the poses that each was seen from. [Gross et al. 2005, Eqs. 9-10]
+/// The appearance map: reference views, and the poses that each was seen from. [Gross et al. 2005, Eqs. 9–10]
 ///
 /// Plain data: [`search`](Self::search), [`references`](Self::references) and [`scale`](Self::scale) are all there is, and
 /// [`from_parts`](Self::from_parts) takes them back.

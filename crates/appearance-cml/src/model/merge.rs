@@ -25,7 +25,7 @@ pub(super) fn merge_places(
     Ok(())
 }
 
-/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13-14]
+/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13–14]
 pub(super) fn merged(
     a: &PlaceComponent,
     b: &PlaceComponent,

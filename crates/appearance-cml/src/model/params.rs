@@ -11,7 +11,7 @@ use crate::{AppearanceMapError, check};
 pub enum ForgettingMode {
     /// References that match at another place lose weight. [Gross et al. 2005, Eq. 17]
     Passive,
-    /// References of this place that do not match lose weight too. [Gross et al. 2005, Eqs. 18-19]
+    /// References of this place that do not match lose weight too. [Gross et al. 2005, Eqs. 18–19]
     #[default]
     Active,
 }

@@ -8,7 +8,7 @@ use crate::{AppearanceMapError, ReferenceMatch, separation_squared, similarity};
 
 /// The weight of a place whose reference matches: it grows if the robot is there and falls if the robot is elsewhere.
 ///
-/// $`w ← β S + (1 - β S) w`$ or $`w ← (1 - β S) w`$. [Gross et al. 2005, Eqs. 15-17]
+/// $`w ← β S + (1 - β S) w`$ or $`w ← (1 - β S) w`$. [Gross et al. 2005, Eqs. 15–17]
 pub(super) fn weight_when_seen(
     place: &PlaceComponent,
     matched: &ReferenceMatch,
@@ -27,7 +27,7 @@ pub(super) fn weight_when_seen(
     Ok((1.0 - gain) * place.weight + if agrees { gain } else { 0.0 })
 }
 
-/// The weight of a place of the robot whose reference does not match. [Gross et al. 2005, Eqs. 18-19]
+/// The weight of a place of the robot whose reference does not match. [Gross et al. 2005, Eqs. 18–19]
 ///
 /// $`w ← (1 - b) w`$, $`b = β_{for} \max(1 - d/d^{for}, 0)\, d^{gain}/σ`$, clamped to [0, 1], with the distance $`d`$ in the plane and the
 /// [uncertainty](ForgettingUncertainty) $`σ`$. $`d^{for}`$ is the match radius, beyond which no match is expected; $`d^{gain}`$ is two steps: a pose

@@ -6,7 +6,8 @@ use crate::{AppearanceMapError, check};
 /// Turns the panoramas of one camera into descriptors.
 ///
 /// Averages per ring and sector are normalized and expanded over the azimuth,
-/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al., Section 2.2], and then over the rings,
+/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al. 2005, Sec. 2.2], and then over
+/// the rings,
 /// in cosines. There a Gaussian of standard deviation $`σ`$ cells smooths by $`e^{-σ² ((2πk/n)² + (πl/n_r)²) / 2}`$ for harmonic $`k`$ of $`n`$ sectors and
 /// cosine $`l`$ of $`n_r`$ rings.
 ///

@@ -1,5 +1,5 @@
 //! What a view looks like, whichever way the robot faces: panoramas become averages per ring and sector, these a Fourier spectrum over the
-//! azimuth. [Gross et al., Section 2.2]
+//! azimuth. [Gross et al. 2005, Sec. 2.2]
 //!
 //! A turn of the robot shifts a panorama and multiplies harmonic $`k`$ of every ring by the same $`e^{-\mathrm i k φ}`$: magnitudes, and phases
 //! between rings, do not depend on it, and the best rotation is the maximum of the cross-correlation.

@@ -9,7 +9,7 @@ use crate::ColorModelError;
 
 /// A Kalman filter over the means of all map colours, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV, for one kind of light.
 ///
-/// Colours are correlated, so colours not seen yet are estimated from those that were. [Schulz & Fox 2004, Eqs. 2-6]
+/// Colours are correlated, so colours not seen yet are estimated from those that were. [Schulz & Fox 2004, Eqs. 2–6]
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_map::ColorId;
@@ -110,7 +110,8 @@ impl LightingFilter {
         &self.covariance
     }
 
-    /// Distribution of the pixels of a colour (Eq. 9). For a colour that does not exist all numbers are NaN, which every function of
+    /// Distribution of the pixels of a colour. [Schulz & Fox 2004, Eq. 9] For a colour that does not exist all numbers are NaN, which every
+    /// function of
     /// densities rejects.
     pub fn color(&self, color: ColorId) -> ColorDensity {
         self.colors().nth(color.index()).unwrap_or_else(ColorDensity::unknown)
@@ -121,7 +122,7 @@ impl LightingFilter {
         ColorDensity::all(&self.mean, &self.covariance, self.params.pixel_color_variance)
     }
 
-    /// Lets the light drift for `seconds` (Eq. 6).
+    /// Lets the light drift for `seconds`. [Schulz & Fox 2004, Eq. 6]
     ///
     /// # Errors
     /// Returns an error if the time is negative or not finite; the state is then unchanged.
@@ -133,7 +134,8 @@ impl LightingFilter {
         Ok(())
     }
 
-    /// Updates the filter with the colour means of one image (Eqs. 3-5). Returns the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
+    /// Updates the filter with the colour means of one image. [Schulz & Fox 2004, Eqs. 3–5] Returns the log evidence
+    /// $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
     /// # Errors
     /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; the state is then unchanged.
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {

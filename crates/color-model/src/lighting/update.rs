@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector};
 
-/// Observes one component of the state: $`z = θ_i + v`$, $`v ∼ N(0, r)`$. Returns $`\ln N(z; μ_i, Σ_{ii} + r)`$.
+/// Observes one component of the state: $`z = θ_i + v`$, $`v ∼ N(0, r)`$. Returns $`\ln N(z; μ_i, Σ_{ii} + r)`$. [Schulz & Fox 2004, Eqs. 3–5]
 ///
 /// The noise of a mean is diagonal, so a colour takes three scalar updates, exactly, without factorization and allocation.
 ///

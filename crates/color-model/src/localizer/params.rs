@@ -92,7 +92,8 @@ impl Default for LocalizerParams {
 }
 
 impl LocalizerParams {
-    /// The method of [Schulz & Fox 2004, IV] alone: the pixel product of Eq. 16, particles from the start distribution, no search, no tempering, no hidden
+    /// The method of [Schulz & Fox 2004, IV] alone: the pixel product [Schulz & Fox 2004, Eq. 16], particles from the start distribution, no
+    /// search, no tempering, no hidden
     /// frames.
     pub fn as_published() -> Self {
         Self {

@@ -28,7 +28,7 @@ impl AppearanceModel {
         Ok(self.tail_probability(state, measurement))
     }
 
-    /// P-values of all pairs of different states (Table 1): how distinct the learned views are. None for a single state.
+    /// P-values of all pairs of different states [Kasprzak & Szynkiewicz, Table 1]: how distinct the learned views are. None for a single state.
     pub fn p_values_between_states(&self) -> Option<PValueStatistics> {
         let rows = || self.conditions[0].features.rows().enumerate();
         summarize(rows().flat_map(|(state, _)| {
@@ -38,7 +38,7 @@ impl AppearanceModel {
         }))
     }
 
-    /// P-values of each state's view in another scene (Table 2): how alike views of the same state are.
+    /// P-values of each state's view in another scene [Kasprzak & Szynkiewicz, Table 2]: how alike views of the same state are.
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the table is of other states or features.

@@ -58,7 +58,7 @@ impl AppearanceLearningParams {
     }
 
     /// The published likelihood: a Gaussian of the weighted distance, $`e^{-\frac{1}{2} \sum_i w_i (m_i - m_i(s))^2}`$, whose weights are one over the variances of the
-    /// features over the states; no disturbance is known. [Kasprzak & Szynkiewicz, 2.3]
+    /// features over the states; no disturbance is known. [Kasprzak & Szynkiewicz, Sec. 2.3]
     ///
     /// ```
     /// use wayfix_condensation::{AppearanceLearningParams, LikelihoodTail};

@@ -11,7 +11,7 @@ use wayfix_evaluation::plot::MapPlot;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
-/// Laps around the shelves. [Gross et al. 2004, Fig. 4]
+/// Laps around the shelves. [Gross et al. 2005, Fig. 4]
 const N_LAPS: usize = 7;
 
 struct Lapped {
@@ -22,7 +22,7 @@ struct Lapped {
     published: SimulatedDriveResult,
 }
 
-/// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
+/// Seven laps around shelves from an empty map, odometry as it is. [Gross et al. 2005, Fig. 4] Length and share of the setup play no part.
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.

@@ -17,7 +17,7 @@ const N_PEOPLE: usize = 20;
 const COURSES: [&str; 6] =
     ["static", "adapting", "static_later", "adapted", "static_as_published", "adapting_as_published"];
 
-/// Fig. 5: a map learned with true poses, four weeks later, static and adapted.
+/// A map learned with true poses, four weeks later, static and adapted. [Gross et al. 2005, Fig. 5]
 ///
 /// The paper reports "numerous" failures of the static map, and then 58 cm "by using the adapted map", which may be the drive that adapts it or a
 /// later one: both are measured, each against the static map on the same drive. The method as published, on the first drive, shows the difficulty of

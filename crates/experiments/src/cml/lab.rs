@@ -12,13 +12,13 @@ use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Mean time between two changes of lamps or curtains, seconds.
 const SWITCHING_S: f64 = 30.0;
-/// Steps after which references are counted. [Gross et al. 2004, Table 1]
+/// Steps after which references are counted. [Gross et al. 2005, Table 1]
 const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 
 /// The drives of [`one`], as the figures call them.
 const COURSES: [&str; 4] = ["passive", "active", "passive_as_published", "active_as_published"];
 
-/// Table 1: references in a lab with changing lamps and curtains, with and without active forgetting.
+/// References in a lab with changing lamps and curtains, with and without active forgetting. [Gross et al. 2005, Table 1]
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {

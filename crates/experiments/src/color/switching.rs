@@ -16,7 +16,7 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
 
-/// Figure 6 of [Schulz & Fox 2004]: the classification rate frame by frame under switched light, of a jump Markov model and of one Gaussian, both
+/// The classification rate [Schulz & Fox 2004, Fig. 6] frame by frame under switched light, of a jump Markov model and of one Gaussian, both
 /// while localizing; and of every light tracker with known poses.
 ///
 /// `switches` are the frames at which the light changes; `bank` has one filter per light, `single` one for all.

@@ -20,7 +20,8 @@ const MIN_PIXELS: u64 = 20;
 /// Classification rates of a withheld colour per image: with the joint prior and with the independent one.
 type Rates = [Vec<f64>; 2];
 
-/// Table 1 of [Schulz & Fox 2004], lower half: each colour is withheld from the lighting filter in turn. Its classification rate then depends on the
+/// The lower half of [Schulz & Fox 2004, Table 1]: each colour is withheld from the lighting filter in turn. Its classification rate then
+/// depends on the
 /// other colours (joint prior) or on its prior alone (independent: all correlations between colours set to zero). Means over the images of the log
 /// with 95 % intervals; the gain of the joint prior is from differences in the same image.
 /// # Errors

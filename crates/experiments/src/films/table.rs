@@ -15,7 +15,7 @@ use wayfix_systems::track::{LostStatusScore, TrackParams, TrackRunHistory, Track
 const N_END: usize = 20;
 
 /// A film with many seeds through several methods: overlap with its interval over the seeds, centre error, frames lost. Pictures are of
-/// the first method and seed.
+/// the first method and seed. [Andrade-Cetto 2005, Fig. 13]
 ///
 /// # Errors
 /// Returns an error if a tracker cannot begin or refuses a frame, or a picture not be drawn.

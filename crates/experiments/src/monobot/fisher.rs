@@ -6,7 +6,7 @@ use wayfix_slam_ekf::{
 };
 
 /// The first entry of the total Fisher information after each of `n_steps` scans of `n_landmarks`, with $`P_{r,0|0} = V = W = 1`$.
-/// [Andrade-Cetto 2005, Fig. 3]
+/// [Andrade-Cetto 2005, Eq. 15, Fig. 3]
 ///
 /// The system is linear with constant noise, so the information does not depend on the measurements.
 /// # Errors

@@ -22,7 +22,7 @@ impl HierarchicalFit {
     }
 }
 
-/// Estimates the distribution of groups from their observations: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10]
+/// Estimates the distribution of groups from their observations: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10, Fig. 2]
 ///
 /// Group $`j`$ has its own $`θ_j ∼ N(μ, Σ)`$ and shows some of its coordinates through noise. The $`θ_j`$ are integrated out in closed
 /// form, and $`\log p(y \mid μ, Σ) + \log p(μ, Σ)`$ climbs by expectation maximization [Dempster, Laird & Rubin 1977], every step of which

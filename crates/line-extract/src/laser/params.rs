@@ -50,7 +50,7 @@ pub struct LineExtractionParams {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum SplitMethod {
-    /// By the distance to the line through the end points, as [Andrade-Cetto, Table 1].
+    /// By the distance to the line through the end points, as [Andrade-Cetto 2005, Table 1].
     #[default]
     EndPointFit,
     /// By the distance to the line fitted to all points [Pavlidis & Horowitz 1974].

@@ -9,7 +9,7 @@ use crate::LineExtractionError;
 /// Reference of a point's distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointDistance {
-    /// The line through both ends of the piece, as in [Andrade-Cetto, Table 2].
+    /// The line through both ends of the piece, as in [Andrade-Cetto 2005, Table 2].
     #[default]
     Line,
     /// The segment between both ends: beyond an end, the distance is that to the end.
@@ -19,7 +19,7 @@ pub enum PointDistance {
 /// The indices of the points that Douglas and Peucker's algorithm keeps, by looking at every point of every piece.
 ///
 /// A piece from $`v_i`$ to $`v_j`$ is split at its farthest point $`v_f`$ as long as $`d_f > ε`$, with
-/// $`d_k = |(v_j - v_i) \times (v_k - v_i)| / ‖v_j - v_i‖`$ [Andrade-Cetto, Tables 1 and 2; the square in the printed denominator would mix
+/// $`d_k = |(v_j - v_i) \times (v_k - v_i)| / ‖v_j - v_i‖`$ [Andrade-Cetto 2005, Tables 1 and 2; the square in the printed denominator would mix
 /// distance and its square]. Among equally far points the first is taken, and for [`PointDistance::Line`] "equally" is decided exactly. The
 /// distance to a line through coincident points is the distance to that point.
 ///

@@ -13,7 +13,8 @@ const SCAN_BUDGET: usize = 2;
 /// Cost of an exact comparison in fast tests: about 100 ns.
 const EXACT_COMPARISON_COST: usize = 100;
 
-/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`PointDistance::Line`](crate::PointDistance), in $`O(n \log^2 n)`$ for every chain.
+/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`PointDistance::Line`](crate::PointDistance), in $`O(n \log^2 n)`$ for every
+/// chain. [Andrade-Cetto 2005, Tables 1, 2]
 ///
 /// While splits are balanced, a test of every point is fastest. After $`2 n \log_2 n`$ tests, convex
 /// hulls of the chain's blocks are built for the rest: the farthest point of a block is a vertex of its hull, found by bisection. This is the

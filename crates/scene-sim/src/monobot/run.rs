@@ -50,14 +50,15 @@ pub struct MonobotRun {
     pub landmarks: Vec<f64>,
     /// Signed distances $`z_k^{(i)} = x_f^{(i)} - x_k + w`$ to every landmark, metres: one row a position.
     pub ranges: Vec<Vec<f64>>,
-    /// Signed distances $`-x_k + w`$ to a known reference at the origin, metres. [Eq. 20]
+    /// Signed distances $`-x_k + w`$ to a known reference at the origin, metres. [Andrade-Cetto 2005, Eq. 20]
     pub anchor_ranges: Vec<f64>,
     /// Positions $`x_k + w`$ by an external sensor, metres. [Sec. 2.2, "An external sensor"]
     pub external_positions: Vec<f64>,
 }
 
 impl MonobotParams {
-    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
+    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Andrade-Cetto 2005, Eq. 19]; the commands are the increments of
+    /// $`x_0 + A \sin(2πk/N)`$.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};

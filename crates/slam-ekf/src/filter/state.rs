@@ -11,7 +11,7 @@ use crate::{
     covariance::MapCovariance,
 };
 
-/// EKF-SLAM over one kind of landmark.
+/// EKF-SLAM over one kind of landmark. [Andrade-Cetto 2005, Fig. 2]
 ///
 /// The covariance of the robot is in the body frame, `(x, y, θ)`; that of landmarks in their own tangent space.
 ///

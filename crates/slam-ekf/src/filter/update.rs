@@ -145,7 +145,7 @@ where
     }
 
     /// All accepted observations at once: one joint linear correction of covariance and means. Returns `None` and changes nothing if their
-    /// innovation covariance is not positive definite.
+    /// innovation covariance is not positive definite. [Andrade-Cetto 2005, Eqs. 6–9]
     fn correct(&mut self, accepted: &[Accepted<M>]) -> Option<()> {
         if accepted.is_empty() {
             return Some(());

@@ -13,7 +13,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 ///
 /// $`J = \sum_k O_k^T S_k^{-1} O_k`$ with $`O_k = \begin{pmatrix} H_{r,k} Φ_k & H_{m,k} \end{pmatrix}`$ and
 /// $`Φ_k = F_{k-1} ⋯ F_0`$: the rows of the local observability matrix, weighed as the total Fisher information of
-/// [Andrade-Cetto 2005, Eqs. 14-17]. Its rank is that of the observability matrix.
+/// [Andrade-Cetto 2005, Eqs. 13–14]. Its rank is that of the observability matrix.
 ///
 /// An EKF linearizes each scan at a different point; in the plane this alone gives `J` spurious information about the heading of the map.
 /// [`unobservable_directions`](Self::unobservable_directions) avoids this: it tests every scan, at its own linearization, for the motion of the world.
@@ -120,7 +120,8 @@ impl ObservabilityRecorder {
     pub fn dimension(&self) -> usize {
         self.information.nrows()
     }
-    /// Number of coordinates or combinations that the measurements determine: the rank of the local observability matrix. Cost O(n³).
+    /// Number of coordinates or combinations that the measurements determine: the rank of the local observability matrix. Below full rank the bound
+    /// of [Andrade-Cetto 2005, Eq. 16] does not exist. Cost O(n³).
     pub fn rank(&self) -> usize {
         self.dimension() - self.null_space().ncols()
     }

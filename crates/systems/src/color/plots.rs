@@ -12,7 +12,7 @@ use wayfix_evaluation::{
     },
 };
 
-/// Plots the path on the field, errors with 3σ bands, the UV ellipses of the colours, and the light over time.
+/// Plots the path on the field, errors with 3σ bands, the UV ellipses of the colours, and the light over time. [Schulz & Fox 2004, Fig. 3]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
@@ -35,7 +35,7 @@ pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
     Ok(plots)
 }
 
-/// The UV part of every colour's density (Eq. 9).
+/// The UV part of every colour's density. [Schulz & Fox 2004, Eq. 9, Fig. 5]
 pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> {
     let ellipse = |(at, name): (usize, &String)| {
         let density = light.color(ColorId(at as u8));
@@ -49,7 +49,7 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
     map.colors().iter().enumerate().map(ellipse).collect()
 }
 
-/// Camera frames beside their classification, spread evenly over the log.
+/// Camera frames beside their classification, spread evenly over the log. [Schulz & Fox 2004, Fig. 4]
 ///
 /// # Errors
 /// Returns an error if an image cannot be decoded or a picture not be drawn.

@@ -6,7 +6,7 @@ use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 /// Number of scans drawn, spread evenly over the log.
 const N_SCANS: usize = 3;
 
-/// Plots all walls of scans with a known pose, and some scans with their walls.
+/// Plots all walls of scans with a known pose, and some scans with their walls. [Andrade-Cetto 2005, Fig. 1b]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.

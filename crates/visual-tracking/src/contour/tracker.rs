@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Tracks a target by its colours, which change, and its contour, which moves by affine maps: CONDENSATION in colour space, validated by
-/// the contour. [Andrade-Cetto & Sanfeliu, section 3.3]
+/// the contour. [Andrade-Cetto 2005, Sec. 3.3, Figs. 10, 13]
 ///
 /// Every sample is a hypothesis about the colours. It warps the colours of the last image, selects their bins, segments the image and fits an
 /// affine snake to the target's blob. Its weight is the agreement with the previous contour and area. The best hypothesis is refined on the image

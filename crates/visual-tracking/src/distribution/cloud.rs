@@ -10,7 +10,7 @@ const N_CELLS: f64 = 64.0;
 /// Pixels below which a remembered point is forgotten.
 const FADED: f64 = 0.5;
 
-/// The target's colours, $`\mathcal C_t`$, as points of the colour space with pixel counts. [Andrade-Cetto & Sanfeliu, section 3.3]
+/// The target's colours, $`\mathcal C_t`$, as points of the colour space with pixel counts. [Andrade-Cetto 2005, Sec. 3.3]
 ///
 /// Pixels of nearly equal colour are one point, so the size of the cloud does not grow with the target.
 /// ```

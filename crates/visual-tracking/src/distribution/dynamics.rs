@@ -8,7 +8,7 @@ use crate::TrackingError;
 type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 
 /// How colours change from one picture to the next: $`\mathbf s_t = A\, \mathbf s'_{t-1} + B\, \mathbf w_t`$ with
-/// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto & Sanfeliu, section 3.3,
+/// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto 2005, Sec. 3.3,
 /// "Probabilistic propagation of samples"]
 ///
 /// The velocity is the last change, so $`A`$ and $`B`$ have two equivalent block rows:

@@ -19,7 +19,7 @@ pub struct LearnedDynamics {
 impl ColorDynamics {
     /// Estimates $`A`$ and $`B`$ from the states of a training sequence by least squares:
     /// $`\min_F \sum_t \| \mathbf x_t - F_x \mathbf x_{t-1} - F_v \dot{\mathbf x}_{t-1} \|^2 + κ \| F - F_0 \|^2`$, and $`L Lᵀ`$ is the
-    /// covariance of the residuals. [Andrade-Cetto & Sanfeliu, section 3.3: "A and B are estimated a priori from a training sequence"]
+    /// covariance of the residuals. [Andrade-Cetto 2005, Sec. 3.3: "A and B are estimated a priori from a training sequence"]
     ///
     /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: a quantity constant in the training sequence then stays constant. It is
     /// in units of the squared states; 0 is plain least squares and needs a sequence in which all 16 numbers vary. The angles of the

@@ -9,7 +9,7 @@ pub const COLOR_DIM: usize = 8;
 pub type ColorStateVector = SVector<f64, COLOR_DIM>;
 
 /// Colour state of one sample: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
-/// [Andrade-Cetto & Sanfeliu, section 3.3]
+/// [Andrade-Cetto 2005, Sec. 3.3]
 ///
 /// The angles are against the axes of a reference distribution, so a state means something only beside it.
 ///

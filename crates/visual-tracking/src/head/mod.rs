@@ -1,4 +1,4 @@
-//! A head followed as an ellipse by the colours inside it and the edge around it. [Andrade-Cetto & Sanfeliu 2004, sec. 3.2; Birchfield 1998]
+//! A head followed as an ellipse by the colours inside it and the edge around it. [Andrade-Cetto 2005, Sec. 3.2, Fig. 9; Birchfield 1998]
 
 mod bimodal;
 mod edge;

@@ -21,7 +21,7 @@ pub struct HeadTrackerParams {
     /// Weight of the gradient across the edge beside that of the colours. Default 0.25: in a cluttered room many edges are stronger than that of a
     /// head.
     pub gradient_weight: f64,
-    /// Rate $`a`$ at which the colours adapt. [Eq. 29] Default 0.1.
+    /// Rate $`a`$ at which the colours adapt. [Andrade-Cetto 2005, Eq. 29] Default 0.1.
     pub color_adaptation_rate: f64,
     /// Intersection above which they do. Default 0.6.
     pub adapt_above_intersection: f64,

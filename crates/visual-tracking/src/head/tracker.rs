@@ -19,12 +19,14 @@ const MIN_SEMI_AXIS: f64 = 3.0;
 /// Points of an outline.
 const N_OUTLINE: usize = 48;
 
-/// Tracks a head as an upright ellipse, by the colours inside and the gradient across its rim. [Andrade-Cetto & Sanfeliu 2004, sec. 3.2;
+/// Tracks a head as an upright ellipse, by the colours inside and the gradient across its rim. [Andrade-Cetto 2005, Sec. 3.2;
 /// Birchfield 1998]
 ///
-/// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head [Eq. 28], updated
+/// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head
+/// [Andrade-Cetto 2005, Eq. 28], updated
 /// incrementally between ellipses, and by the gradient across its rim. Both are scaled to their range; the highest sum wins. The colours adapt
-/// [Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more frequent around the
+/// [Andrade-Cetto 2005, Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more
+/// frequent around the
 /// ellipse than in it are excluded. The size comes from a [`ScaleSource`] or from the search.
 /// ```
 /// use rand::SeedableRng;

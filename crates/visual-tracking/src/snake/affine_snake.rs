@@ -65,7 +65,7 @@ impl SnakeParams {
     }
 }
 
-/// A contour with a fixed shape up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$. [Andrade-Cetto & Sanfeliu, section 3.1:
+/// A contour with a fixed shape up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$. [Andrade-Cetto 2005, Sec. 3.1, Fig. 12;
 /// "a restriction to the classical snake minimization procedure, to obtain affine deformations only"]
 /// ```
 /// use wayfix_visual_tracking::{AffineSnake, PixelMask, BoundingBox, MaskEdges, Outline, SnakeParams};

@@ -67,7 +67,7 @@ impl EdgeSearch for MaskEdges<'_> {
 }
 
 /// The strongest change of colour along the normal, optionally only where a mask allows it: $`∇I · \mathrm{dil}(∇S)`$.
-/// [Andrade-Cetto & Sanfeliu, section 3.3, "Contour updating"]
+/// [Andrade-Cetto 2005, Sec. 3.3, "Contour updating"]
 #[derive(Clone, Copy, Debug)]
 pub struct ColorEdges<'a> {
     picture: &'a RgbImage,

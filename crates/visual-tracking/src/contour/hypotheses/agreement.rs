@@ -1,7 +1,7 @@
 use super::super::ContourTrackerParams;
 
 /// Agreement of a segmentation with the known target, each part from 0 to 1.
-/// [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and weight"]
+/// [Andrade-Cetto 2005, Sec. 3.3, "Measure and weight"]
 /// ```
 /// use wayfix_visual_tracking::{ColorHypothesisAgreement, ContourTrackerParams};
 /// let perfect = ColorHypothesisAgreement { affine: 1.0, area: ColorHypothesisAgreement::of_areas(400.0, 400.0), quality: ColorHypothesisAgreement::of_euler_number(1, 10.0) };

@@ -4,7 +4,7 @@ use wayfix_particle::{ParticleSet, SystematicResampler};
 use super::super::ContourTrackerParams;
 use crate::{ColorDynamics, ColorState, PrincipalColors, TrackingError};
 
-/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and the colours measured in the last image.
+/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and the colours measured in the last image. [Andrade-Cetto 2005, Figs. 10–11]
 #[derive(Clone, Debug)]
 pub(in crate::contour) struct Samples {
     particles: ParticleSet<ColorState>,
