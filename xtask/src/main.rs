@@ -26,7 +26,8 @@ Usage: cargo xtask TASK [OPTIONS]
   tidy               check the invariants of docs/architecture.md that a machine can check; --write redraws its picture
   spelling           look for misspelled words
   docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it;
-                     --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress
+                     --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress;
+                     --papers [REPORT] writes docs/papers.md anew, with the measured figures of a report
   tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns
