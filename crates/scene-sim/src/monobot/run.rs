@@ -57,8 +57,7 @@ pub struct MonobotRun {
 }
 
 impl MonobotParams {
-    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Andrade-Cetto 2005, Eq. 19]; the commands are the increments of
-    /// $`x_0 + A \sin(2πk/N)`$.
+    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Andrade-Cetto 2005, Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};

@@ -49,8 +49,7 @@ impl LaserDriveParams {
 }
 
 /// One lap of a loop of 90 m on an office floor of 303 m², as in [Andrade-Cetto 2005, Fig. 7], and nearly 4 m beyond its start. The wheels
-/// differ by 0.13
-/// %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
+/// differ by 0.13 %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
 pub(super) fn office_laser() -> Scenario {
     let params = LaserDriveParams {
         layout: WorldLayout::OfficeFloor(OfficeFloor {
