@@ -87,6 +87,8 @@ fn check(row: &Row) -> Result<()> {
     let item = row.item().context("is no item")?;
     let n = row.what.split_whitespace().count();
     ensure!((1..=MOST_WORDS).contains(&n), "`what` has {n} words, not 1 to {MOST_WORDS}");
+    let mut cells = [&row.run, &row.published, &row.ours, &row.missing].into_iter().flatten();
+    ensure!(cells.all(|cell| !cell.is_empty() && !cell.contains('|')), "a cell is empty or has a bar");
     let is_equation = item.kind == Kind::Equation;
     ensure!(is_equation || row.published.is_some(), "`published` is missing");
     let has_ours = row.ours.is_some() || !row.measured.is_empty();
@@ -125,6 +127,7 @@ mod tests {
             |rest: &str| paper(&format!("{EQUATIONS}, {{ item = \"Table 1\", what = \"a\", {rest} }}"));
         assert!(table("published = \"1\"").is_err());
         assert!(table("ours = \"1\"").is_err());
+        assert!(table("published = \"\", missing = \"private\"").is_err());
         assert!(table("published = \"1\", measured = [\"a/b\"]").is_err());
         assert!(table("published = \"1\", missing = \"private\"").is_ok());
         assert!(table("published = \"1\", missing = \"private\", ours = \"2\"").is_err());

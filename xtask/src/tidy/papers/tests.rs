@@ -12,7 +12,7 @@ tables = 1
 figures = 1
 rows = [
   { item = "Eq. 1", what = "gain", run = "wayfix run slam" },
-  { item = "Table 1, dark", what = "rates", published = "0.9, 0.8", measured = ["slam/loop/rate", "slam/loop/other"] },
+  { item = "Table 1, dark", what = "rates", published = "0.9, 0.8", ours = "one, two", measured = ["slam/loop/rate", "slam/loop/other"] },
   { item = "Fig. 1", what = "photo", published = "picture", missing = "a photograph" },
 ]
 "#;
@@ -47,7 +47,7 @@ fn page_has_a_row_for_each_item() {
         "{page}"
     );
     let row = format!(
-        "| Table 1, dark | rates | {link} | `cargo xtask regress slam`: loop | 0.9, 0.8 | not in the last report |"
+        "| Table 1, dark | rates | {link} | `cargo xtask regress slam`: loop | 0.9, 0.8 | one, two: not in the last report |"
     );
     assert!(page.contains(&row), "{page}");
     assert!(page.contains("| Fig. 1 | photo | none | none | picture | a photograph |\n"), "{page}");
@@ -60,10 +60,10 @@ fn measured_figures_stay_until_a_report_has_them() {
         json!([{"name": "rate", "value": 0.5, "unit": ""}, {"name": "other", "value": 0.25, "unit": "m"}]),
     );
     let page = written("", &first);
-    assert!(page.contains("| 0.9, 0.8 | 0.5, 0.25 m |\n"), "{page}");
+    assert!(page.contains("| 0.9, 0.8 | one, two: 0.5, 0.25 m |\n"), "{page}");
     assert_eq!(written(&page, &Value::Null), page);
     let second = report(json!([{"name": "rate", "value": 0.75, "unit": "", "pass": false}]));
-    assert!(written(&page, &second).contains("| 0.75 (missed), 0.25 m |\n"));
+    assert!(written(&page, &second).contains("| one, two: 0.75 (missed), 0.25 m |\n"));
     let papers = table::read(TABLE_TEXT).unwrap();
     assert!(Measured::new("", &second).check(&papers).is_err(), "the run lost a figure");
 }
