@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "bimodal_colors" => head.bimodal_colors = value.parse()?,
             "search_radius" => head.search_radius = number()?,
             "head_scale_step" => head.scale_step = number()?,
-            "gradient_weight" => head.gradient_weight = number()?,
+            "gradient_weight" => head.gradient_weight = Some(number()?),
             "color_adaptation_rate" => head.color_adaptation_rate = number()?,
             "adapt_above_intersection" => head.adapt_above_intersection = number()?,
             "tracker" => value.clone_into(&mut name_of_tracker),

@@ -18,6 +18,7 @@ mod distribution;
 mod error;
 mod head;
 mod mask;
+mod pan_tilt;
 mod picture;
 mod pixel_rect;
 mod snake;
@@ -35,9 +36,10 @@ pub use distribution::{
     PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
+pub use head::{HeadDetector, HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
 pub use image::RgbImage;
 pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
+pub use pan_tilt::{ActiveEstimate, ActiveTracker, PanTiltAim, PanTiltHead, PanTiltLimits, SimulatedPanTilt};
 pub use pixel_rect::PixelRect;
 pub use snake::{AffineMap, AffineSnake, ColorEdges, EdgeSearch, MaskEdges, Outline, SnakeFit, SnakeParams};
 pub use tracker::{TargetEstimate, TrackStatus, Tracker};
