@@ -39,8 +39,8 @@ pub fn table(
     for (k, method) in methods.iter().enumerate() {
         let scores: Vec<&FilmTrackingScore> = runs.iter().map(|(scores, ..)| &scores[k]).collect();
         let prefix = method.name().replace('-', "_");
-        let named = |metric: Metric| Metric { name: format!("{prefix}_{}", metric.name), ..metric };
-        metrics.extend(over_seeds(&scores, film.occlusion).into_iter().map(named));
+        let of_method = over_seeds(&scores, film.occlusion).into_iter();
+        metrics.extend(of_method.map(|metric| prefixed(&prefix, metric)));
     }
     let mut steps: Vec<Duration> = runs.iter().flat_map(|(.., steps)| steps).copied().collect();
     steps.sort_unstable();
@@ -52,7 +52,12 @@ pub fn table(
     Ok(ReportRun { metrics, timings, figures, notes, ..ReportRun::default() })
 }
 
-fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<Metric> {
+/// With the name of what it is about before its own.
+pub(super) fn prefixed(prefix: &str, metric: Metric) -> Metric {
+    Metric { name: format!("{prefix}_{}", metric.name), ..metric }
+}
+
+pub(super) fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<Metric> {
     let all = |values: fn(&FilmTrackingScore) -> &Vec<f64>| -> Vec<f64> {
         scores.iter().flat_map(|score| values(score)).copied().collect()
     };

@@ -11,6 +11,7 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::track::{
     self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
 };
+use wayfix_visual_tracking::ColorSpace;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -33,6 +34,13 @@ struct Settings {
     /// The method as published, without the additions.
     #[serde(default)]
     as_published: bool,
+    /// Whether the contour tracker learns its colour dynamics from a training film.
+    #[serde(default)]
+    learns_dynamics: bool,
+    /// Space of the contour tracker's colours, unless it is the default.
+    color_space: Option<ColorSpace>,
+    /// Largest rate, in degrees a second, of a pan/tilt head that turns a part of the film's view after the target.
+    pan_tilt_rate_deg_s: Option<f64>,
     /// True boxes of a recording, relative to the folder given by `--data`.
     truth: Option<PathBuf>,
 }
@@ -51,7 +59,9 @@ fn fifty() -> usize {
 
 impl Settings {
     fn params(&self) -> TrackParams {
-        if self.as_published { TrackParams::as_published() } else { TrackParams::default() }
+        let mut params = if self.as_published { TrackParams::as_published() } else { TrackParams::default() };
+        params.contour.color_space = self.color_space.unwrap_or(params.contour.color_space);
+        params
     }
 }
 
@@ -72,6 +82,12 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
         (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);
     }
     let first = 1000 * job.options.seed;
+    if let Some(rate) = settings.pan_tilt_rate_deg_s {
+        return films::active(&film, first..first + n_seeds, rate.to_radians());
+    }
+    if settings.learns_dynamics {
+        return films::learned(&film, first..first + n_seeds, &settings.params().contour);
+    }
     films::table(&film, first..first + n_seeds, &settings.methods, &settings.params())
 }
 
