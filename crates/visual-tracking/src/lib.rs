@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
 //! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`ColorBinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
+//! | camera on a pan/tilt head | [`ActiveTracker`], [`PanTiltHead`] |
 //! | masks | [`PixelMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
 //! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
 //! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
@@ -36,7 +37,9 @@ pub use distribution::{
     PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{HeadDetector, HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
+pub use head::{
+    DistanceScale, HeadDetector, HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale,
+};
 pub use image::RgbImage;
 pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
 pub use pan_tilt::{ActiveEstimate, ActiveTracker, PanTiltAim, PanTiltHead, PanTiltLimits, SimulatedPanTilt};

@@ -12,5 +12,5 @@ mod tracker;
 
 pub use detector::HeadDetector;
 pub use params::HeadTrackerParams;
-pub use scale_source::{ScaleSource, SearchedScale};
+pub use scale_source::{DistanceScale, ScaleSource, SearchedScale};
 pub use tracker::HeadTracker;
