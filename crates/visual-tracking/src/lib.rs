@@ -37,9 +37,7 @@ pub use distribution::{
     PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{
-    DistanceScale, HeadDetector, HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale,
-};
+pub use head::{DistanceScale, HeadDetector, HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
 pub use image::RgbImage;
 pub use mask::{Blob, Blobs, PixelConnectivity, PixelMask, StructuringElement};
 pub use pan_tilt::{ActiveEstimate, ActiveTracker, PanTiltAim, PanTiltHead, PanTiltLimits, SimulatedPanTilt};
