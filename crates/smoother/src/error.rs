@@ -85,7 +85,9 @@ pub enum SmootherError {
         largest: f64,
     },
     /// Gauss–Newton left the region where residuals are finite.
-    #[error("the step of iteration {iteration} leads to a cost that is not finite; Levenberg-Marquardt may converge")]
+    #[error(
+        "the step of iteration {iteration} leads to a cost that is not finite; Levenberg-Marquardt may converge"
+    )]
     Diverged {
         /// Number of the iteration, from 1.
         iteration: usize,

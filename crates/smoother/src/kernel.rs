@@ -87,7 +87,10 @@ mod tests {
                     let cost = |s: f64| kernel.cost_and_weight(s, mu).0;
                     let slope = (cost(s + h) - cost(s - h)) / (2.0 * h);
                     let (_, weight) = kernel.cost_and_weight(s, mu);
-                    assert!((slope - weight).abs() < 1e-8 + 1e-6 * weight, "{kernel:?} at {s}: {slope} {weight}");
+                    assert!(
+                        (slope - weight).abs() < 1e-8 + 1e-6 * weight,
+                        "{kernel:?} at {s}: {slope} {weight}"
+                    );
                 }
             }
         }

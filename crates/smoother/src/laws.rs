@@ -24,7 +24,12 @@ pub fn residual<R: Residual>(residual: &R, variables: Refs<'_, R>) -> Result<(),
         let case = || format!("for variable {place}");
         finite("Jacobians are finite (law 1)", claimed.0, case)?;
         let shape_fits = (claimed.1, claimed.2) == (expected.1, expected.2) && claimed.1 == rows.len();
-        within("Jacobians have a row for each row of the value (law 2, 3)", if shape_fits { 0.0 } else { f64::INFINITY }, 0.0, case)?;
+        within(
+            "Jacobians have a row for each row of the value (law 2, 3)",
+            if shape_fits { 0.0 } else { f64::INFINITY },
+            0.0,
+            case,
+        )?;
         let largest = expected.0.iter().chain(rows).fold(1.0_f64, |max, entry| max.max(entry.abs()));
         let difference = claimed.0.iter().zip(expected.0).fold(0.0_f64, |max, (a, b)| max.max((a - b).abs()));
         // A central difference errs by about ε^(2/3) of the largest number; its third derivatives may be some hundred times larger.

@@ -16,6 +16,7 @@
 //! Information matrices are inverse covariances; the cost has no factor ½. Tangent vectors are in the body frame.
 
 mod error;
+pub mod g2o;
 mod graph;
 mod information;
 mod kernel;

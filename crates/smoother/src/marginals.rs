@@ -18,9 +18,8 @@ pub(crate) fn at_present(graph: &mut Graph) -> Result<Marginals<'_>, SmootherErr
         Some(structure) => structure,
         None => Structure::new(graph)?,
     };
-    let result = structure
-        .linearize(graph, &graph.values, 1.0)
-        .and_then(|_| unconstrained::check(&mut structure));
+    let result =
+        structure.linearize(graph, &graph.values, 1.0).and_then(|_| unconstrained::check(&mut structure));
     let structure = graph.structure.insert(structure);
     result.map(|()| Marginals { structure })
 }

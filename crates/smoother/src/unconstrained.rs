@@ -58,7 +58,8 @@ fn free_directions(structure: &mut Structure, scale: &[f64]) -> Result<(DMatrix<
     let mut width = 8.min(n);
     loop {
         // Any start without symmetry will do.
-        let mut basis = DMatrix::from_fn(n, width, |i, k| ((i * width + k) as f64 * 0.754_877_666 + 0.1).fract() - 0.5);
+        let mut basis =
+            DMatrix::from_fn(n, width, |i, k| ((i * width + k) as f64 * 0.754_877_666 + 0.1).fract() - 0.5);
         for _ in 0..N_ITERATIONS {
             scale_rows(&mut basis, &root);
             structure.cholesky.solve_in_place(basis.as_mut_slice())?;
@@ -90,8 +91,12 @@ fn scale_rows(matrix: &mut DMatrix<f64>, factors: &[f64]) {
 
 /// Gauss–Jordan elimination: each direction gets the first coordinate that moves along it and along no other.
 fn names(structure: &Structure, mut free: DMatrix<f64>) -> Vec<UnconstrainedDirection> {
-    let variables: Vec<(usize, usize)> =
-        structure.offsets.iter().enumerate().filter_map(|(variable, offset)| Some((variable, (*offset)?))).collect();
+    let variables: Vec<(usize, usize)> = structure
+        .offsets
+        .iter()
+        .enumerate()
+        .filter_map(|(variable, offset)| Some((variable, (*offset)?)))
+        .collect();
     let dim = |variable: usize| structure.dim(variable);
     let mut directions = Vec::new();
     let mut done = 0;
@@ -99,7 +104,8 @@ fn names(structure: &Structure, mut free: DMatrix<f64>) -> Vec<UnconstrainedDire
         for coordinate in 0..dim(*variable) {
             let row = offset + coordinate;
             let left = free.columns(done, free.ncols() - done);
-            let Some(best) = (0..left.ncols()).max_by(|a, b| left[(row, *a)].abs().total_cmp(&left[(row, *b)].abs()))
+            let Some(best) =
+                (0..left.ncols()).max_by(|a, b| left[(row, *a)].abs().total_cmp(&left[(row, *b)].abs()))
             else {
                 continue;
             };

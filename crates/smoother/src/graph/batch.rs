@@ -71,7 +71,11 @@ impl<R: Residual> Batch<R> {
         self.indices.append(&mut other.indices);
     }
 
-    fn value(&self, slot: usize, columns: <R::Variables as VariableTuple<R::Dim>>::Columns<'_>) -> crate::Value<R> {
+    fn value(
+        &self,
+        slot: usize,
+        columns: <R::Variables as VariableTuple<R::Dim>>::Columns<'_>,
+    ) -> crate::Value<R> {
         self.residuals[slot].value(R::Variables::at(columns, &self.keys[slot]))
     }
 
@@ -96,7 +100,8 @@ impl<R: Residual> AnyBatch for Batch<R> {
 
     fn cost(&self, values: &Values, mu: f64) -> f64 {
         let columns = R::Variables::columns(values);
-        let costs = (0..self.len()).map(|slot| self.kernels[slot].cost_and_weight(self.norm(slot, columns), mu).0);
+        let costs =
+            (0..self.len()).map(|slot| self.kernels[slot].cost_and_weight(self.norm(slot, columns), mu).0);
         costs.sum()
     }
 
@@ -160,7 +165,8 @@ impl<R: Residual> AnyBatch for Batch<R> {
                 return Err(not_finite("the value"));
             }
             let dims = R::Variables::tangent_dims(at);
-            for ((entries, rows, columns), dim) in R::Variables::jacobian_entries(&jacobians).iter().zip(dims) {
+            for ((entries, rows, columns), dim) in R::Variables::jacobian_entries(&jacobians).iter().zip(dims)
+            {
                 shape("a Jacobian", (*rows, *columns), (n_rows, dim))?;
                 if !entries.iter().all(|entry| entry.is_finite()) {
                     return Err(not_finite("a Jacobian"));

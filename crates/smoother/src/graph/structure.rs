@@ -3,7 +3,12 @@ use std::sync::Arc;
 use super::{factor_graph::Graph, values::Values};
 use crate::{
     SmootherError,
-    linear::{block_address::BlockAddress, cholesky::{Cholesky, NotPositive}, normal_equations::NormalEquations, pattern::Pattern},
+    linear::{
+        block_address::BlockAddress,
+        cholesky::{Cholesky, NotPositive},
+        normal_equations::NormalEquations,
+        pattern::Pattern,
+    },
 };
 
 /// What depends on which variable meets which, and on no value.
@@ -44,18 +49,34 @@ impl Structure {
             blocks[batch].push(address.unwrap_or(BlockAddress::NOWHERE));
         });
         let offsets = block_of.iter().map(|block| block.map(|block| pattern.offset(block))).collect();
-        Ok(Self { offsets, dims: graph.dims.clone(), blocks, equations: NormalEquations::zeros(pattern), cholesky, factored: None })
+        Ok(Self {
+            offsets,
+            dims: graph.dims.clone(),
+            blocks,
+            equations: NormalEquations::zeros(pattern),
+            cholesky,
+            factored: None,
+        })
     }
 
     /// Sums the normal equations at `values`; the cost.
-    pub(crate) fn linearize(&mut self, graph: &Graph, values: &Values, mu: f64) -> Result<f64, SmootherError> {
+    pub(crate) fn linearize(
+        &mut self,
+        graph: &Graph,
+        values: &Values,
+        mu: f64,
+    ) -> Result<f64, SmootherError> {
         self.equations.clear();
         self.factored = None;
         let mut cost = 0.0;
         for (batch, blocks) in graph.batches.iter().zip(&self.blocks) {
             cost += batch.linearize(values, mu, blocks, &self.offsets, &mut self.equations);
         }
-        if cost.is_finite() && self.equations.is_finite() { Ok(cost) } else { Err(graph.locate_not_finite(values)) }
+        if cost.is_finite() && self.equations.is_finite() {
+            Ok(cost)
+        } else {
+            Err(graph.locate_not_finite(values))
+        }
     }
 
     /// Number of rows of a variable that is not fixed.

@@ -32,7 +32,13 @@ impl BlockAddress {
 
     /// Adds $`L^T R`$ for matrices by columns; `shape` is the number of rows, of columns of L and of columns of R.
     #[inline]
-    pub(crate) fn add_product(&self, left: &[f64], right: &[f64], shape: (usize, usize, usize), entries: &mut [f64]) {
+    pub(crate) fn add_product(
+        &self,
+        left: &[f64],
+        right: &[f64],
+        shape: (usize, usize, usize),
+        entries: &mut [f64],
+    ) {
         let (rows, n_left, n_right) = shape;
         if self.place == Place::Nowhere {
             return;
@@ -41,7 +47,8 @@ impl BlockAddress {
             let column = &right[k * rows..(k + 1) * rows];
             let n_left = if self.place == Place::Diagonal { k + 1 } else { n_left };
             for i in 0..n_left {
-                let product: f64 = left[i * rows..(i + 1) * rows].iter().zip(column).map(|(a, b)| a * b).sum();
+                let product: f64 =
+                    left[i * rows..(i + 1) * rows].iter().zip(column).map(|(a, b)| a * b).sum();
                 let entry = if self.place == Place::Below { self.entry(k, i) } else { self.entry(i, k) };
                 entries[entry] += product;
             }

@@ -37,8 +37,9 @@ impl Cholesky {
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| out_of_memory())?;
-        let memory = MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))
-            .map_err(|_| out_of_memory())?;
+        let memory =
+            MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))
+                .map_err(|_| out_of_memory())?;
         let mut factor = Vec::new();
         factor.try_reserve_exact(symbolic.len_val()).map_err(|_| out_of_memory())?;
         factor.resize(symbolic.len_val(), 0.0);

@@ -9,7 +9,7 @@ use super::block_address::{BlockAddress, Place};
 use crate::SmootherError;
 
 /// The blocks of a symmetric matrix that can differ from zero, in an order of elimination that keeps the factor sparse.
-pub struct Pattern {
+pub(crate) struct Pattern {
     /// First row of each block.
     offsets: Vec<usize>,
     dims: Vec<usize>,
@@ -124,7 +124,13 @@ fn minimum_degree(n: usize, pairs: &[(usize, usize)]) -> Result<Vec<usize>, Smoo
     let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
     let mut memory = MemBuffer::try_new(amd::order_scratch::<usize>(n, pairs.len()))
         .map_err(|_| SmootherError::OutOfMemory { n_rows: n })?;
-    amd::order(&mut order, &mut inverse, blocks.as_ref(), amd::Control::default(), MemStack::new(&mut memory))
-        .map_err(|_| SmootherError::OutOfMemory { n_rows: n })?;
+    amd::order(
+        &mut order,
+        &mut inverse,
+        blocks.as_ref(),
+        amd::Control::default(),
+        MemStack::new(&mut memory),
+    )
+    .map_err(|_| SmootherError::OutOfMemory { n_rows: n })?;
     Ok(order)
 }

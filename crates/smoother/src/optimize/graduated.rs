@@ -32,7 +32,8 @@ fn stages(graph: &mut Graph, structure: &mut Structure, params: &Params) -> Resu
     let start_cost = graph.cost();
     let mut iterations = 0;
     if params.graduated {
-        let largest = graph.batches.iter().map(|batch| batch.largest_graduated(&graph.values)).fold(0.0, f64::max);
+        let largest =
+            graph.batches.iter().map(|batch| batch.largest_graduated(&graph.values)).fold(0.0, f64::max);
         let mut mu = 2.0 * largest; // convex at all residuals [Yang et al. 2020, Remark 5]
         while mu > 1.0 && mu.is_finite() {
             let stage = Params { max_iterations: 1, ..*params };

@@ -36,7 +36,10 @@ where
     }
 
     /// $`∂r/∂x_2 = J_r^{-1}(r)`$ and $`∂r/∂x_1 = -J_r^{-1}(r)\, \mathrm{Ad}_{x_2^{-1} x_1}`$. [Solà et al. 2018, Eqs. 79, 83]
-    fn jacobians(&self, (first, second): (&G, &G)) -> (OMatrix<f64, G::Dim, G::Dim>, OMatrix<f64, G::Dim, G::Dim>) {
+    fn jacobians(
+        &self,
+        (first, second): (&G, &G),
+    ) -> (OMatrix<f64, G::Dim, G::Dim>, OMatrix<f64, G::Dim, G::Dim>) {
         let relative = first.inverse().compose(second);
         let by_second = self.inverse.compose(&relative).log_jacobian();
         let by_first = -(&by_second * relative.inverse().adjoint());
