@@ -156,7 +156,8 @@ fn left_jacobian_inverse_derivative<T: RealField + Copy>(r: &Vector3<T>, t: &Vec
         (c, (-f_slope / angle - c - c) / square)
     };
     let double_cross = r * r.dot(t) - t * square;
-    let derivative = Matrix3::identity() * r.dot(t) + r * t.transpose() - t * r.transpose() * nalgebra::convert::<f64, T>(2.0);
+    let derivative = Matrix3::identity() * r.dot(t) + r * t.transpose()
+        - t * r.transpose() * nalgebra::convert::<f64, T>(2.0);
     t.cross_matrix() * half + derivative * c + double_cross * r.transpose() * slope
 }
 

@@ -35,12 +35,15 @@ impl<P: RigidPose> PoseGraph<P> {
         let poses: Vec<_> = self.poses.iter().map(|(_, pose)| graph.add_variable(*pose)).collect();
         let points: Vec<_> = self.points.iter().map(|(_, point)| graph.add_variable(*point)).collect();
         let held = self.held();
-        for ((id, _), variable) in self.poses.iter().zip(&poses).filter(|((id, _), _)| held.contains(id)) {
-            debug_assert!(held.contains(id));
-            graph.fix(*variable)?;
+        for ((id, _), variable) in self.poses.iter().zip(&poses) {
+            if held.contains(id) {
+                graph.fix(*variable)?;
+            }
         }
-        for ((_, _), variable) in self.points.iter().zip(&points).filter(|((id, _), _)| held.contains(id)) {
-            graph.fix(*variable)?;
+        for ((id, _), variable) in self.points.iter().zip(&points) {
+            if held.contains(id) {
+                graph.fix(*variable)?;
+            }
         }
         let mut check = Check { repair, n_indefinite: 0, first_line: 0, smallest: 0.0 };
         for edge in &self.edges {

@@ -124,7 +124,14 @@ impl RigidPose for Pose3<f64> {
             return Err(LineProblem::NotARotation(norm));
         }
         let translation = Vector3::new(numbers[0], numbers[1], numbers[2]);
-        Ok(Self { translation, rotation: UnitQuaternion::from_quaternion(quaternion) })
+        // One that is of unit length up to rounding keeps its bits.
+        let is_unit = (norm - 1.0).abs() <= 4.0 * f64::EPSILON;
+        let rotation = if is_unit {
+            UnitQuaternion::new_unchecked(quaternion)
+        } else {
+            UnitQuaternion::from_quaternion(quaternion)
+        };
+        Ok(Self { translation, rotation })
     }
     fn numbers(&self) -> Vec<f64> {
         let (t, q) = (self.translation, self.rotation);

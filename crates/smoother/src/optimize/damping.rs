@@ -1,8 +1,10 @@
 use super::params::Method;
 use crate::{SmootherError, graph::structure::Structure};
 
-/// First damping after a rejected Gauss–Newton step, relative to the diagonal: Ceres' first trust region.
-const FIRST_DAMPING: f64 = 1e-4;
+/// First damping after a rejected Gauss–Newton step, relative to the diagonal, as in GTSAM.
+const FIRST_DAMPING: f64 = 1e-5;
+/// What a rejection multiplies the damping by, and an accepted step divides it by. [Marquardt 1963]
+const FACTOR: f64 = 10.0;
 /// Beyond it steps are shorter than the rounding of the variables.
 const LARGEST_DAMPING: f64 = 1e16;
 
@@ -11,8 +13,6 @@ pub(super) struct Damping {
     method: Method,
     /// λ of Levenberg–Marquardt.
     lambda: f64,
-    /// What the next rejection multiplies λ by.
-    growth: f64,
     /// Radius of the trust region, in units of the diagonal.
     radius: f64,
     dogleg: Option<Dogleg>,
@@ -33,7 +33,7 @@ struct Dogleg {
 
 impl Damping {
     pub(super) fn new(method: Method) -> Self {
-        Self { method, lambda: 0.0, growth: 2.0, radius: f64::INFINITY, dogleg: None }
+        Self { method, lambda: 0.0, radius: f64::INFINITY, dogleg: None }
     }
 
     /// The normal equations are those of another point.
@@ -56,10 +56,7 @@ impl Damping {
         let accepted = new_cost < cost;
         match self.method {
             Method::GaussNewton => return true,
-            Method::LevenbergMarquardt if accepted => {
-                self.lambda *= (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0); // [Nielsen 1999]
-                self.growth = 2.0;
-            }
+            Method::LevenbergMarquardt if accepted => self.decrease(),
             Method::LevenbergMarquardt => self.increase(),
             Method::Dogleg => {
                 let length = scaled_norm(&step.delta, &structure.scale());
@@ -74,8 +71,11 @@ impl Damping {
     }
 
     fn increase(&mut self) {
-        self.lambda = if self.lambda == 0.0 { FIRST_DAMPING } else { self.lambda * self.growth };
-        self.growth *= 2.0;
+        self.lambda = if self.lambda == 0.0 { FIRST_DAMPING } else { self.lambda * FACTOR };
+    }
+
+    fn decrease(&mut self) {
+        self.lambda = if self.lambda <= FIRST_DAMPING { 0.0 } else { self.lambda / FACTOR };
     }
 
     /// $`(H + λ D) δ = -g`$

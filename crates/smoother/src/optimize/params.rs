@@ -5,7 +5,7 @@ use crate::SmootherError;
 pub enum Method {
     /// Full steps, whatever they lead to. [Barfoot 2017, 4.3.1]
     GaussNewton,
-    /// Gauss–Newton until a step raises the cost; from then on damped by the diagonal of $`H`$. [Marquardt 1963; Nielsen 1999]
+    /// Gauss–Newton until a step raises the cost; from then on damped by the diagonal of $`H`$. [Marquardt 1963]
     #[default]
     LevenbergMarquardt,
     /// The best step along gradient and Gauss–Newton step within a trust region. [Powell 1970]

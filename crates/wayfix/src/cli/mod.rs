@@ -7,6 +7,7 @@ mod info;
 mod input;
 #[cfg_attr(not(feature = "live"), path = "no_live.rs")]
 mod live;
+mod optimize;
 mod outputs;
 mod params;
 mod read_problems;
@@ -33,6 +34,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 ///                                                 a target in every image, from its box in the first
 ///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
+///   wayfix optimize manhattan.g2o.gz              poses that fit the measurements of a pose graph best
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
 struct Arguments {
@@ -49,6 +51,7 @@ enum Command {
     Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
+    Optimize(optimize::Arguments),
     Completions(completions::Arguments),
     /// Make pictures to try a system on.
     #[command(subcommand)]
@@ -88,6 +91,7 @@ pub fn main() -> ExitCode {
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
+        Command::Optimize(arguments) => optimize::main(arguments),
         Command::Completions(arguments) => completions::main(arguments),
         Command::Simulate(command) => simulate::main(command),
     };
