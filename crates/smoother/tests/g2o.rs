@@ -2,9 +2,11 @@
 
 use std::io::{BufReader, Read, Write};
 
+use rand::RngExt;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_smoother::{
     Params,
-    g2o::{self, G2o, G2oError, LineProblem, Repair},
+    g2o::{self, G2o, G2oError, LineProblem, PoseGraph, Repair, RigidPose},
 };
 
 const PLANAR: &str = "# a square\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 1.5707963\n\nVERTEX_SE2 2 1 1 3.1415926\nVERTEX_XY 7 2 2\nFIX 1\n\
@@ -145,4 +147,56 @@ fn indefinite_information_is_counted_and_repaired_on_request() {
     let mut repaired = graph.problem(Repair::ClipEigenvalues).unwrap();
     assert_eq!(repaired.n_repaired, 1);
     assert!(repaired.graph.optimize(&Params::default()).unwrap().cost < 1.0);
+}
+
+/// What the fuzz target does, on seeded changes of two files: bytes replaced, lines dropped and repeated.
+#[test]
+fn damaged_text_is_refused_or_solved() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let letters = b"0123456789.-e \nEDGFIX#";
+    let (mut n_read, mut n_solved) = (0, 0);
+    for trial in 0..4000 {
+        let mut lines: Vec<String> = [PLANAR, SPATIAL][trial % 2].lines().map(str::to_owned).collect();
+        for _ in 0..rng.random_range(1..4) {
+            let line = rng.random_range(0..lines.len());
+            match rng.random_range(0..4) {
+                0 => drop(lines.remove(line)),
+                1 => lines.push(lines[line].clone()),
+                _ if lines[line].is_empty() => {}
+                _ => {
+                    let place = rng.random_range(0..lines[line].len());
+                    let letter = char::from(letters[rng.random_range(0..letters.len())]);
+                    lines[line].replace_range(place..=place, &letter.to_string());
+                }
+            }
+        }
+        let Ok(file) = g2o::read(lines.join("\n").as_bytes()) else { continue };
+        n_read += 1;
+        n_solved += match file {
+            G2o::Planar(graph) => solved(&graph),
+            G2o::Spatial(graph) => solved(&graph),
+        };
+    }
+    assert!(
+        n_read > 400 && n_solved > 200,
+        "{n_read} read, {n_solved} solved: the changes should not spoil all"
+    );
+}
+
+fn solved<P: RigidPose>(file: &PoseGraph<P>) -> usize {
+    let Ok(mut problem) = file.problem(Repair::ClipEigenvalues) else { return 0 };
+    problem.start_linearly(file).unwrap();
+    match problem.graph.optimize(&Params::default()) {
+        Ok(summary) => {
+            assert!(
+                summary.cost.is_finite() && summary.cost <= summary.start_cost * (1.0 + 1e-9),
+                "{summary:?}"
+            );
+            1
+        }
+        Err(error) => {
+            assert!(!problem.named(file, error).to_string().is_empty());
+            0
+        }
+    }
 }

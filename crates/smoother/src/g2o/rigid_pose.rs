@@ -120,7 +120,7 @@ impl RigidPose for Pose3<f64> {
         let quaternion = nalgebra::Quaternion::new(numbers[6], numbers[3], numbers[4], numbers[5]);
         let norm = quaternion.norm();
         // Two written digits of a unit quaternion are within 1 %.
-        if !((norm - 1.0).abs() < 0.01) {
+        if (norm - 1.0).abs() > 0.01 {
             return Err(LineProblem::NotARotation(norm));
         }
         let translation = Vector3::new(numbers[0], numbers[1], numbers[2]);

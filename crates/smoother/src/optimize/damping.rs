@@ -23,6 +23,8 @@ pub(super) struct Step {
     pub(super) delta: Vec<f64>,
     /// Decrease of the cost if the residuals were linear.
     pub(super) predicted: f64,
+    /// Whether it is a whole Gauss–Newton step, or all but one.
+    pub(super) is_full: bool,
 }
 
 /// The two ends of the dogleg.
@@ -60,10 +62,11 @@ impl Damping {
             Method::LevenbergMarquardt => self.increase(),
             Method::Dogleg => {
                 let length = scaled_norm(&step.delta, &structure.scale());
-                if !(gain >= 0.25) {
+                // [Nocedal & Wright 2006, Algorithm 4.1]
+                if gain > 0.75 {
+                    self.radius = self.radius.max(2.0 * length);
+                } else if gain < 0.25 || gain.is_nan() {
                     self.radius = 0.25 * length;
-                } else if gain > 0.75 {
-                    self.radius = self.radius.max(3.0 * length); // [Nocedal & Wright 2006, Algorithm 4.1]
                 }
             }
         }
@@ -88,7 +91,7 @@ impl Damping {
             let delta = structure.solve()?;
             let damped = scaled_norm(&delta, &structure.scale()).powi(2) * self.lambda;
             let predicted = damped - dot(&delta, structure.equations.gradient());
-            return Ok(Some(Step { delta, predicted }));
+            return Ok(Some(Step { delta, predicted, is_full: self.lambda <= FIRST_DAMPING }));
         }
         Ok(None)
     }
@@ -100,7 +103,8 @@ impl Damping {
             None => Dogleg { cauchy: cauchy(structure, &scale), newton: newton(structure)?.delta },
         };
         let (to_newton, to_cauchy) = (scaled_norm(&ends.newton, &scale), scaled_norm(&ends.cauchy, &scale));
-        let delta = if to_newton <= self.radius {
+        let is_full = to_newton <= self.radius;
+        let delta = if is_full {
             ends.newton.clone()
         } else if to_cauchy >= self.radius {
             ends.cauchy.iter().map(|entry| entry * self.radius / to_cauchy).collect()
@@ -110,7 +114,7 @@ impl Damping {
         self.dogleg = Some(ends);
         let curved = dot(&delta, &structure.equations.multiply(&delta));
         let predicted = -2.0 * dot(&delta, structure.equations.gradient()) - curved;
-        Ok((predicted > 0.0).then_some(Step { delta, predicted }))
+        Ok((predicted > 0.0 || is_full).then_some(Step { delta, predicted, is_full }))
     }
 }
 
@@ -120,7 +124,7 @@ fn newton(structure: &mut Structure) -> Result<Step, SmootherError> {
     }
     let delta = structure.solve()?;
     let predicted = -dot(&delta, structure.equations.gradient());
-    Ok(Step { delta, predicted })
+    Ok(Step { delta, predicted, is_full: true })
 }
 
 /// The minimum along the scaled gradient.

@@ -36,35 +36,32 @@ pub(super) fn minimize(
             unconstrained::check(structure)?;
         }
         damping.relinearized();
-        let (accepted, predicted) = loop {
+        let nothing_to_gain = NOTHING_TO_GAIN + params.relative_decrease * cost;
+        let mut is_small = false;
+        let accepted = loop {
             // Solve.
-            let Some(step) = damping.step(structure)? else { break (None, 0.0) };
+            let Some(step) = damping.step(structure)? else { break None };
+            is_small |= step.is_full && step.predicted <= nothing_to_gain;
             // Retract.
             candidate.retract_from(&values, &structure.offsets, &step.delta);
             // Judge.
             let new_cost = graph.cost_at(&candidate, mu);
             if damping.judge(cost, new_cost, &step, structure) {
-                break (Some(new_cost), step.predicted);
+                break Some(new_cost);
             }
-            if step.predicted <= NOTHING_TO_GAIN + params.relative_decrease * cost {
-                break (None, step.predicted);
+            if is_small || step.predicted <= NOTHING_TO_GAIN {
+                break None;
             }
         };
-        let Some(new_cost) = accepted else {
-            stop = if predicted <= NOTHING_TO_GAIN + params.relative_decrease * cost {
-                Stop::Converged
-            } else {
-                Stop::NoDecrease
-            };
-            break;
-        };
-        if !new_cost.is_finite() {
-            return Err(SmootherError::Diverged { iteration: iterations });
+        if let Some(new_cost) = accepted {
+            if !new_cost.is_finite() {
+                return Err(SmootherError::Diverged { iteration: iterations });
+            }
+            std::mem::swap(&mut values, &mut candidate);
+            cost = new_cost;
         }
-        std::mem::swap(&mut values, &mut candidate);
-        cost = new_cost;
-        if predicted <= NOTHING_TO_GAIN + params.relative_decrease * cost {
-            stop = Stop::Converged;
+        if is_small || accepted.is_none() {
+            stop = if is_small { Stop::Converged } else { Stop::NoDecrease };
             break;
         }
     }

@@ -6,7 +6,7 @@ use std::{
     process::ExitCode,
 };
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use wayfix_evaluation::{
     plot::{MapPlot, SvgPlot},
     report::{MachineInfo, Metric, Report, ReportRun, ReportSuite, RunSummary, table, table::TableStyle},
@@ -15,7 +15,7 @@ use wayfix_evaluation::{
 use wayfix_sensor_log::read_text;
 use wayfix_smoother::{
     Method, Params, Stop,
-    g2o::{self, G2o, PoseGraph, Repair, RigidPose},
+    g2o::{self, G2o, G2oError, PoseGraph, Repair, RigidPose},
 };
 use wayfix_systems::system::Stopwatch;
 
@@ -113,7 +113,10 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
         warnings.push("no VERTEX lines: the start is dead reckoning".to_owned());
     }
     let repair = if arguments.repair { Repair::ClipEigenvalues } else { Repair::Refuse };
-    let mut problem = file.problem(repair).with_context(|| name.clone())?;
+    let mut problem = file.problem(repair).map_err(|error| match error {
+        G2oError::Indefinite { .. } => anyhow!("{name}: {error}; --repair does that"),
+        other => anyhow!(other).context(name.clone()),
+    })?;
     if problem.n_repaired > 0 {
         let n = problem.n_repaired;
         warnings.push(format!(
