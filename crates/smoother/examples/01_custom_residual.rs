@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     graph.optimize(&Params::default())?;
     let (found, sigma) =
-        (graph.value(beacon)?.clone(), graph.marginals()?.covariance(beacon)?.diagonal().map(f64::sqrt));
+        (*graph.value(beacon)?, graph.marginals()?.covariance(beacon)?.diagonal().map(f64::sqrt));
     println!(
         "beacon at {:.3?} ± {:.3?} m, delay {:.3} m",
         found.as_slice(),

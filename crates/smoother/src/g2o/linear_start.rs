@@ -142,10 +142,12 @@ fn mean_positions<P: RigidPose>(
         sums[edge.to].0 += pose.rotation_part() * seen + pose.translation_part();
         sums[edge.to].1 += 1.0;
     }
-    let point = |((id, point), (sum, n)): (&(u64, P::Point), (Vector3<f64>, f64))| {
-        if n == 0.0 || held.contains(id) { *point } else { P::point_at(&(sum / n)) }
-    };
-    file.points.iter().zip(sums).map(point).collect()
+    let mut points = Vec::with_capacity(sums.len());
+    for ((id, point), (sum, n)) in file.points.iter().zip(sums) {
+        let stays = n == 0.0 || held.contains(id);
+        points.push(if stays { *point } else { P::point_at(&(sum / n)) });
+    }
+    points
 }
 
 fn mean_information(information: &DMatrix<f64>, range: std::ops::Range<usize>) -> f64 {

@@ -16,8 +16,7 @@ struct Lines<P: RigidPose> {
     points: Vec<(u64, P::Point)>,
     /// Line, both identifiers, measurement, information.
     edges: Vec<(usize, [u64; 2], P, DMatrix<f64>)>,
-    /// The same with the sensor.
-    point_edges: Vec<(usize, [u64; 2], u64, Vec<f64>, DMatrix<f64>)>,
+    point_edges: Vec<PointLine>,
     sensors: BTreeMap<u64, P>,
     fixed: BTreeMap<u64, usize>,
     known: BTreeSet<u64>,
@@ -49,6 +48,15 @@ pub fn read(reader: impl BufRead) -> Result<G2o, G2oError> {
         }
     }
     if spatial.is_empty() { planar.connect().map(G2o::Planar) } else { spatial.connect().map(G2o::Spatial) }
+}
+
+/// An edge to a landmark.
+struct PointLine {
+    line: usize,
+    ends: [u64; 2],
+    sensor: u64,
+    measured: Vec<f64>,
+    information: DMatrix<f64>,
 }
 
 impl<P: RigidPose> Lines<P> {
@@ -104,7 +112,8 @@ impl<P: RigidPose> Lines<P> {
             let ends = two_vertices(&mut words)?;
             let sensor = if has_sensor == 1 { words.id()? } else { 0 };
             let measured = words.numbers(P::N)?;
-            self.point_edges.push((line, ends, sensor, measured, words.symmetric(P::N)?));
+            let information = words.symmetric(P::N)?;
+            self.point_edges.push(PointLine { line, ends, sensor, measured, information });
         }
         Ok(())
     }
@@ -142,7 +151,7 @@ impl<P: RigidPose> Lines<P> {
             edges.push(Edge { from, to, measured, information, line });
         }
         let mut point_edges = Vec::with_capacity(self.point_edges.len());
-        for (line, [from, to], sensor, measured, information) in self.point_edges {
+        for PointLine { line, ends: [from, to], sensor, measured, information } in self.point_edges {
             let (from, to) = (find(&poses, &points, from, line)?, find(&points, &poses, to, line)?);
             let sensor = match self.sensors.get(&sensor) {
                 Some(sensor) => *sensor,
@@ -169,9 +178,8 @@ impl<P: RigidPose> Lines<P> {
     /// The vertices that edges name, by identifier.
     fn make_vertices(&mut self) {
         let on_edges = self.edges.iter().flat_map(|(_, ends, ..)| *ends);
-        let poses: BTreeSet<u64> =
-            on_edges.chain(self.point_edges.iter().map(|(_, ends, ..)| ends[0])).collect();
-        let points: BTreeSet<u64> = self.point_edges.iter().map(|(_, ends, ..)| ends[1]).collect();
+        let poses: BTreeSet<u64> = on_edges.chain(self.point_edges.iter().map(|edge| edge.ends[0])).collect();
+        let points: BTreeSet<u64> = self.point_edges.iter().map(|edge| edge.ends[1]).collect();
         self.points = points.difference(&poses).map(|id| (*id, P::point(&[0.0; 3]))).collect();
         self.poses = poses.into_iter().map(|id| (id, P::identity())).collect();
     }
