@@ -1,5 +1,12 @@
 //! The sparse solver against dense linear algebra that shares only the residuals.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
 mod common;
 
 use common::world;

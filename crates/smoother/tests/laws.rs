@@ -1,5 +1,12 @@
 //! Our residuals keep the laws, and the suite catches those that break them.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
 use nalgebra::{Const, Matrix1, UnitQuaternion, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, LieGroup, Pose2, Pose3};
 use wayfix_smoother::{Between, Prior, RelativePosition, Residual, laws};

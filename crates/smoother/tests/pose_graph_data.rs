@@ -1,5 +1,12 @@
 //! The public pose graphs in the folder `pose_graphs` of WAYFIX_DATA: the best known cost of each. Passes without that folder.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
 use std::{env, fs::File, io::BufReader, path::Path};
 
 use flate2::bufread::MultiGzDecoder;
