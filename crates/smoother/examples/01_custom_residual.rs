@@ -1,6 +1,4 @@
 //! A variable and a residual of your own: a robot that hears a beacon through a cable of unknown delay. Public API only.
-//!
-//! `cargo run -p wayfix-smoother --example 01_custom_residual`
 
 use nalgebra::{Const, Matrix1, Vector1, Vector2};
 use wayfix_estimation_traits::{Manifold, Pose2};
@@ -51,14 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         graph.set_kernel(id, Kernel::Cauchy { c: 2.385 })?;
     }
     graph.optimize(&Params::default())?;
-    let (found, sigma) =
-        (*graph.value(beacon)?, graph.marginals()?.covariance(beacon)?.diagonal().map(f64::sqrt));
-    println!(
-        "beacon at {:.3?} ± {:.3?} m, delay {:.3} m",
-        found.as_slice(),
-        sigma.as_slice(),
-        graph.value(delay)?.0
-    );
-    assert!((found - Vector2::new(3.0, 1.0)).norm() < 0.1 && (graph.value(delay)?.0 - 0.4).abs() < 0.1);
+    let (found, delay) = (graph.value(beacon)?, graph.value(delay)?.0);
+    println!("beacon at {:.3?} m, delay {delay:.3} m", found.as_slice());
+    assert!((found - Vector2::new(3.0, 1.0)).norm() < 0.1 && (delay - 0.4).abs() < 0.1);
     Ok(())
 }
