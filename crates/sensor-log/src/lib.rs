@@ -43,6 +43,7 @@ mod log;
 mod mcap_log;
 mod open;
 mod planar;
+mod pose_measurement;
 mod record;
 mod report;
 pub mod ros;
@@ -66,6 +67,7 @@ pub use mcap_log::{
     MessageWriter, ViewerDrawing, topics,
 };
 pub use open::{OpenOptions, PoseKind, open, open_all};
+pub use pose_measurement::{MeasuredQuantity, PoseMeasurement};
 pub use record::{
     CameraInfo, Detection, DetectionTarget, Record, RecordData, TrueLandmark, TruePosition, TrueWall,
     Velocity,

@@ -11,11 +11,14 @@ mod common;
 use std::io::Cursor;
 
 use proptest::prelude::*;
-use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
+use wayfix_estimation_traits::{
+    Pose2,
+    nalgebra::{Matrix3, Vector2},
+};
 use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LaserScan, LogEnd, LogError, LogFormat, McapWriter,
-    OpenOptions, PoseKind, Record, RecordData, RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall,
-    Velocity, convert, open, topics, write,
+    MeasuredQuantity, OpenOptions, PoseKind, PoseMeasurement, Record, RecordData, RowProblemKind, Stamp,
+    TrueLandmark, TruePosition, TrueWall, Velocity, convert, open, topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -87,7 +90,27 @@ fn data() -> impl Strategy<Value = RecordData> {
             RecordData::TrueWall(TrueWall { id, start: Vector2::new(a, b), end: Vector2::new(c, d) })
         }),
         pose().prop_map(RecordData::EstimatedPose),
+        pose_measurement().prop_map(RecordData::PoseMeasurement),
     ]
+}
+
+fn pose_measurement() -> impl Strategy<Value = PoseMeasurement> {
+    let quantity = prop_oneof![
+        (number(), number()).prop_map(|(x, y)| MeasuredQuantity::Position(Vector2::new(x, y))),
+        (number(), number())
+            .prop_map(|(latitude, longitude)| MeasuredQuantity::Geodetic { latitude, longitude }),
+        number().prop_map(MeasuredQuantity::Heading),
+        pose().prop_map(MeasuredQuantity::Pose),
+    ];
+    let covariance = prop::option::of(
+        prop::array::uniform6(number())
+            .prop_map(|[xx, xy, yy, xh, yh, hh]| Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh)),
+    );
+    ("[a-z]{0,5}", quantity, covariance).prop_map(|(frame, quantity, covariance)| PoseMeasurement {
+        frame,
+        quantity,
+        covariance,
+    })
 }
 
 /// Up to `max` records in time order, often several at one stamp.

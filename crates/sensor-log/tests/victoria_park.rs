@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, OpenOptions, Record, RecordData,
-    RowProblemKind, Stamp, TruePosition, open,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, MeasuredQuantity, OpenOptions,
+    PoseMeasurement, Record, RecordData, RowProblemKind, Stamp, TruePosition, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -68,6 +68,27 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
     }
     let named: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
     assert_eq!(named[0], "gps.csv:3: fix 100 m from the one before and 100 m from the one after");
+}
+
+#[test]
+fn a_fix_with_a_sigma_is_a_measurement_and_no_truth() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    let rows = "t_s,x_m,y_m,sigma_m\n1,-67.5,-41.75,\n2,-60,-40,5.3\n3,500,0,5.3\n4,-50,-40,\n5,0,0,far\n";
+    write(folder.path(), "gps.csv", rows);
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let measured = records.iter().filter_map(|record| match &record.data {
+        RecordData::PoseMeasurement(measured) => Some(measured.clone()),
+        _ => None,
+    });
+    let measured: Vec<PoseMeasurement> = measured.collect();
+    assert_eq!(measured.len(), 2, "a filter gates the jump, not the reader");
+    let first = &measured[0];
+    assert_eq!(first.quantity, MeasuredQuantity::Position([-60.0, -40.0].into()));
+    assert_eq!((first.frame.as_str(), first.covariance.unwrap().m11), ("world", 5.3 * 5.3));
+    let truths = records.iter().filter(|record| matches!(record.data, RecordData::TruePosition(_)));
+    assert_eq!(truths.count(), 2);
+    assert_eq!(report.problems.get(&RowProblemKind::NotANumber), Some(&1));
 }
 
 #[test]

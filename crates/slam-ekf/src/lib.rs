@@ -37,24 +37,27 @@ mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{
-    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds, NearestNeighbour,
-    NearestNeighbourParams,
+    AnyAssociation, Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds,
+    NearestNeighbour, NearestNeighbourParams,
 };
 pub use error::SlamError;
 pub use filter::{
-    CovarianceUpdate, EkfSlam, LandmarkConfirmationParams, LandmarkEstimate, LandmarkMergingParams,
-    LinearizationPoint, OutlierRule, PredictedMeasurement, SlamParams, UpdateOrder,
+    AnchorError, AnchorParams, CovarianceUpdate, EkfSlam, ExpectedLandmarks, LandmarkConfirmationParams,
+    LandmarkEstimate, LandmarkMergingParams, LinearizationPoint, OutlierRule, PredictedMeasurement,
+    SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
     AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
-    DriftingPoseSensor, MonobotMotion, MonobotSensor, MotionWithRangeScale, MountedSensor, OdometryMotion,
-    PLANAR_SYMMETRIES, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
-    RelativePosition, RelativePositionSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    DriftingPoseSensor, ExternalError, ExternalParams, HeadingSensor, LocalPlane, MonobotMotion,
+    MonobotSensor, MotionStatistics, MotionWithRangeScale, MountedSensor, MovedSensor, OdometryMotion,
+    PLANAR_SYMMETRIES, PlanarRobot, PoseSensor, PoseWithRangeScale, PositionSensor, RangeBearing,
+    RangeBearingSensor, RangeBearingSensorWithScale, RelativePosition, RelativePositionSensor,
+    SequentialMotion, UnknownMotion, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};
-pub use outcome::{LandmarkMerge, ObservationOutcome, UpdateReport};
+pub use outcome::{LandmarkMerge, ObservationOutcome, RobotInnovation, UpdateReport};
 pub use snapshot::{SavedLandmark, SavedRetiredLandmark, SlamSnapshot};
 
 /// The matrix library of every public signature.

@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, allocator::Allocator};
+use nalgebra::{DMatrix, DefaultAllocator, allocator::Allocator};
 use wayfix_estimation_traits::Manifold;
 
 use crate::{Innovation, LandmarkId};
@@ -71,6 +71,17 @@ pub struct LandmarkMerge {
     pub kept: LandmarkId,
     /// The one that was removed.
     pub removed: LandmarkId,
+}
+
+/// The innovation of a measurement of the robot alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotInnovation {
+    /// Normalized innovation squared.
+    pub nis: f64,
+    /// $`H`$ by the robot's tangent coordinates.
+    pub jacobian: DMatrix<f64>,
+    /// $`S`$: the innovation covariance.
+    pub covariance: DMatrix<f64>,
 }
 
 impl<Z: Manifold<Scalar = f64>> UpdateReport<Z>

@@ -3,6 +3,7 @@
 mod camera;
 mod cloud;
 mod frames;
+mod measurement;
 mod origin;
 mod reading;
 mod record;

@@ -1,4 +1,4 @@
-use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::encode};
+use super::{MessageSink, MessageWriter, camera, measurement, scan, topics, vehicle, writing::encode};
 use crate::{ImageFormat, LogError, Record, RecordData};
 
 impl<S: MessageSink> MessageWriter<S> {
@@ -49,6 +49,9 @@ impl<S: MessageSink> MessageWriter<S> {
             }
             RecordData::EstimatedPose(pose) => {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
+            }
+            RecordData::PoseMeasurement(measured) => {
+                self.message(topics::POSE_MEASUREMENT, stamp, &measurement::encode(timestamp, measured))
             }
             RecordData::TrueLandmark(_) | RecordData::TrueWall(_) => Ok(()),
             RecordData::CameraInfo(info) => {

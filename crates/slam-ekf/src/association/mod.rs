@@ -1,5 +1,6 @@
 //! Data association: one rule per file, all behind [`DataAssociation`].
 
+mod any;
 mod candidates;
 mod joint_compatibility;
 mod joint_innovation;
@@ -10,6 +11,7 @@ mod new_ids;
 
 use nalgebra::DefaultAllocator;
 
+pub use any::AnyAssociation;
 pub use joint_compatibility::{JointCompatibility, JointCompatibilityParams};
 pub use known_ids::KnownIds;
 pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};

@@ -24,7 +24,10 @@ pub struct SlamParams {
     pub covariance_update: CovarianceUpdate,
     /// Linearization points, which decide whether the filter stays consistent on long loops.
     pub linearization_point: LinearizationPoint,
-    /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
+    /// Number of the first landmarks that become anchors when they are confirmed, see [`EkfSlam::fix`](crate::EkfSlam::fix); anchors that are
+    /// given count. The paper: 1.
+    pub anchor_first: usize,
+    /// A landmark with more revisions leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
     /// paper: 50.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub retire_after: Option<usize>,
@@ -108,6 +111,7 @@ impl Default for SlamParams {
             update_order: UpdateOrder::Joint,
             covariance_update: CovarianceUpdate::default(),
             linearization_point: LinearizationPoint::default(),
+            anchor_first: 0,
             retire_after: None,
             confirmation: LandmarkConfirmationParams::default(),
             merging: None,

@@ -61,6 +61,7 @@ where
         }
         let merges = self.merge_duplicates();
         self.remove_undetected();
+        self.anchor_first();
         self.retire_revised();
         self.covariance.end_update();
         Ok(UpdateReport { outcomes, merges })

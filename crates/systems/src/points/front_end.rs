@@ -4,16 +4,16 @@ use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LogError, Record, RecordData, Stamp, Velocity,
 };
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkId, MotionWithRangeScale, MountedSensor, Observation, PoseWithRangeScale, RangeBearing,
-    RangeBearingSensor, RangeBearingSensorWithScale, SlamError, SlamParams,
+    EkfSlam, ExternalParams, LandmarkId, MotionWithRangeScale, MountedSensor, Observation,
+    PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, SequentialMotion,
+    SlamError, SlamParams, UnknownMotion,
 };
 
 use super::{
-    MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing,
-    sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
+    MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing, state::PointState,
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -49,7 +49,7 @@ impl PointSystem {
         start_covariance: &Matrix3<f64>,
     ) -> Result<Self, SlamError> {
         let params = params.validated()?;
-        let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
+        let association = rule.with(params.nearest_neighbour, params.joint_compatibility)?;
         // Two identities are two landmarks, however near they stand.
         let (confirmation, merging) = match rule {
             AssociationRule::Known => (params.filter.confirmation, None),
@@ -79,8 +79,7 @@ impl PointSystem {
 
     /// Where the antenna is when the robot is at `pose`.
     pub fn antenna(&self, pose: &Pose2<f64>) -> Vector2<f64> {
-        let MountingParams { antenna_x, antenna_y, .. } = self.front_end.params.mounting;
-        pose.transform(&Vector2::new(antenna_x, antenna_y))
+        pose.transform(&self.front_end.external().1)
     }
 }
 
@@ -103,6 +102,22 @@ impl FrontEnd for PointFrontEnd {
             RecordData::Detections(detections) => self.take_detections(stamp, detections, estimator),
             _ => Ok(()),
         }
+    }
+
+    fn external(&self) -> (&ExternalParams, Vector2<f64>) {
+        let MountingParams { antenna_x, antenna_y, .. } = self.params.mounting;
+        (&self.params.external, Vector2::new(antenna_x, antenna_y))
+    }
+
+    /// The filter makes the whole motion.
+    fn motion_to(
+        &mut self,
+        stamp: Stamp,
+        estimator: &mut Points,
+    ) -> Result<Option<(Pose2<f64>, Matrix3<f64>)>, String> {
+        let has_started = stamp >= self.time;
+        self.advance_to(stamp, estimator)?;
+        Ok(has_started.then(|| (Pose2::identity(), Matrix3::zeros())))
     }
 
     fn draw_map(

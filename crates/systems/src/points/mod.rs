@@ -8,9 +8,7 @@ mod params;
 mod plots;
 mod ranges;
 mod run;
-mod sequential_motion;
 mod state;
-mod unknown_motion;
 
 pub use figures::summarize;
 pub use front_end::{PointFrontEnd, PointSensor, PointSystem};

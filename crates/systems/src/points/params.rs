@@ -3,9 +3,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{LogFormat, LogMeta};
 use wayfix_slam_ekf::{
-    AckermannVehicle, CorrelatedNoise, JointCompatibilityParams, LandmarkConfirmationParams,
-    LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule, RangeBearingSensor,
-    SlamParams, VelocityMotion,
+    AckermannVehicle, AnchorParams, CorrelatedNoise, ExternalParams, JointCompatibilityParams,
+    LandmarkConfirmationParams, LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule,
+    RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_TIMEOUT};
@@ -33,6 +33,11 @@ pub struct PointSlamParams {
     /// Number of true landmarks of the log, nearest to the start first, that the robot is given as known: anchors that tie the map to the
     /// world. For logs that have true landmarks.
     pub n_anchors: usize,
+    /// Landmarks that are known before the run.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub anchors: Vec<AnchorParams<[f64; 2]>>,
+    /// Sensors of the pose that do not use the map.
+    pub external: ExternalParams,
     /// Timing of the robot, kind and scale of its ranges.
     pub robot: RobotTimingParams,
     /// Where things sit on the robot.
@@ -68,7 +73,7 @@ pub struct MountingParams {
     pub sensor_y: f64,
     /// Which way it looks, rad; 0 ahead, counter-clockwise.
     pub sensor_heading: f64,
-    /// The antenna whose true positions the log has, m.
+    /// The antenna whose positions the log has, m.
     pub antenna_x: f64,
     /// The antenna, m.
     pub antenna_y: f64,
@@ -140,6 +145,8 @@ impl PointSlamParams {
                 association: None,
                 start_pose: None,
                 n_anchors: 0,
+                anchors: Vec::new(),
+                external: ExternalParams::default(),
                 robot: RobotTimingParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),

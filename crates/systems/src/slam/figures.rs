@@ -10,8 +10,13 @@ use wayfix_slam_ekf::{
 use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// Events that count a refused observation or record.
-const REJECTIONS: [&str; 4] =
-    ["observation_gated", "observation_duplicate", "observation_unusable", "record_refused"];
+const REJECTIONS: [&str; 5] = [
+    "observation_gated",
+    "observation_duplicate",
+    "observation_unusable",
+    "measurement_gated",
+    "record_refused",
+];
 
 /// The figures and events of a run, ready for the report; `of_map` are the figures of the kind of landmark.
 pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun

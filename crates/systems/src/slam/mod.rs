@@ -7,6 +7,7 @@ mod association;
 mod estimates;
 mod estimator;
 mod event_name;
+mod external;
 mod figures;
 mod front_end;
 mod increment_numbers;
@@ -17,7 +18,6 @@ mod start;
 mod system;
 
 pub use association::AssociationRule;
-pub(crate) use association::ChosenRule;
 pub use estimates::{SlamDrawing, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};

@@ -1,12 +1,15 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     SlamSnapshot, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate};
+use super::{
+    AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
+    external::MapMeasurement,
+};
 use crate::system::{EventCounts, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -82,7 +85,7 @@ where
     }
     /// How observations find their landmarks.
     pub fn association(&self) -> AssociationRule {
-        self.estimator.association.rule()
+        AssociationRule::of(&self.estimator.association)
     }
     /// Where odometry alone would put the robot.
     pub fn dead_reckoning(&self) -> &Pose2<f64> {
@@ -108,7 +111,22 @@ where
             return Ok(());
         }
         self.taken_until = record.stamp;
-        self.front_end.take(record, &mut self.estimator)
+        let RecordData::PoseMeasurement(measured) = &record.data else {
+            return self.front_end.take(record, &mut self.estimator);
+        };
+        let (params, antenna) = self.front_end.external();
+        if !params.is_on() {
+            self.estimator.events.count("measurement_ignored");
+            return Ok(());
+        }
+        let measurement =
+            MapMeasurement::new(measured, params, antenna).map_err(|error| error.to_string())?;
+        let Some(motion) = self.front_end.motion_to(record.stamp, &mut self.estimator)? else {
+            self.estimator.events.count("record_before_start");
+            return Ok(());
+        };
+        let taken = self.estimator.take_measurement(&measurement, motion);
+        taken.map_err(|error| error.to_string())
     }
     fn finish(&mut self) -> Result<(), String> {
         self.front_end.finish(&mut self.estimator)

@@ -6,7 +6,6 @@ mod events;
 mod held_velocity;
 mod known_start;
 mod laser;
-mod motion_statistics;
 mod odometry_delay;
 mod odometry_lag;
 mod overlap;
@@ -20,13 +19,13 @@ pub use events::{EventCounts, RefusedRecord};
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
-pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
 pub use plausible_increment::IncrementPlausibilityCheck;
 pub(crate) use robot_drawing::{ellipse, write_pose, write_robot};
 pub use stopwatch::Stopwatch;
+pub use wayfix_slam_ekf::MotionStatistics;
 
 use wayfix_sensor_log::Record;
 

@@ -54,6 +54,10 @@ pub fn run(
     {
         system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
     }
+    let between = |[start, end]: [[f64; 2]; 2]| {
+        truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
+    };
+    system.estimator.filter.add_anchors(&params.anchors, None, between)?;
     drive_through(system, track, true_walls, records, observe)
 }
 

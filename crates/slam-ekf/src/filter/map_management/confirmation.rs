@@ -66,8 +66,10 @@ where
 
     /// Updates the landmark attributes that are not estimated, from one observation.
     pub(in crate::filter) fn extend(&mut self, id: LandmarkId, measurement: &M::Measurement) {
-        if let Some(slot) = self.landmarks.get_mut(&id) {
-            slot.mean = self.model.extended(&self.robot, &slot.mean, measurement);
+        let in_state = self.landmarks.get_mut(&id).map(|slot| &mut slot.mean);
+        let retired = self.retired.get_mut(&id).map(|retired| &mut retired.mean);
+        if let Some(mean) = in_state.or(self.anchors.get_mut(&id)).or(retired) {
+            *mean = self.model.extended(&self.robot, mean, measurement);
         }
     }
 

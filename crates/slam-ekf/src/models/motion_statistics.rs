@@ -1,9 +1,9 @@
 use nalgebra::{Matrix3, Vector3};
-use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
 
 /// Statistics of the robot's motion so far. They bound its motion while odometry is missing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionStatistics {
     /// Time with a known motion, s.
     seconds: f64,

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{MotionModel, Pose2};
 ///
 /// $`F = F_n ⋯ F_1,\; Q = F_n (⋯ F_2 Q_1 F_2^T + Q_2 ⋯) F_n^T + Q_n`$
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SequentialMotion<M>(pub(super) M);
+pub struct SequentialMotion<M>(pub M);
 
 impl<M> MotionModel for SequentialMotion<M>
 where
@@ -38,8 +38,8 @@ where
 
 #[cfg(test)]
 mod tests {
+    use crate::{VelocityControl, VelocityMotion};
     use wayfix_estimation_traits::laws;
-    use wayfix_slam_ekf::{VelocityControl, VelocityMotion};
 
     use super::*;
 

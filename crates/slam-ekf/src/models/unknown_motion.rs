@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{MotionModel, Pose2};
 
 /// A stretch of time of which no record tells the motion: the robot is where it was, with a covariance in the body frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct UnknownMotion(pub(super) Matrix3<f64>);
+pub struct UnknownMotion(pub Matrix3<f64>);
 
 impl MotionModel for UnknownMotion {
     type State = Pose2<f64>;
