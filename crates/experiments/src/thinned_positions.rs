@@ -9,16 +9,16 @@ use wayfix_slam_ekf::ExternalParams;
 /// Positions of a log as measurements of an external sensor. [Andrade-Cetto 2003, Eqs. 26-27]
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ThinnedPositions {
+pub(crate) struct ThinnedPositions {
     /// Standard deviation of a position along each axis, m.
-    pub sigma_m: f64,
+    pub(crate) sigma_m: f64,
     /// Seconds between two measurements; without it none is used, and the noise is only that of the truth.
-    pub every_s: Option<f64>,
+    pub(crate) every_s: Option<f64>,
 }
 
 impl ThinnedPositions {
     /// Parameters of a filter that takes the measurements.
-    pub fn params(&self) -> ExternalParams {
+    pub(crate) fn params(&self) -> ExternalParams {
         ExternalParams {
             frames: self.every_s.iter().map(|_| topics::WORLD_FRAME.to_owned()).collect(),
             position_sigma: Some(self.sigma_m),
@@ -28,7 +28,7 @@ impl ThinnedPositions {
 
     /// The records with measurements. A fix of a receiver becomes one and is no truth any more; a true pose stays, and the measurement of its position
     /// gets an error.
-    pub fn in_log(&self, records: Vec<Record>, seed: u64) -> Vec<Record> {
+    pub(crate) fn in_log(&self, records: Vec<Record>, seed: u64) -> Vec<Record> {
         let Some(every) = self.every_s else { return records };
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut last = records.first().map_or(Stamp::default(), |record| record.stamp);

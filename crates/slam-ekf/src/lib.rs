@@ -49,11 +49,12 @@ pub use filter::{
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
     AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
-    DriftingPoseSensor, ExternalError, ExternalParams, HeadingSensor, LocalPlane, MonobotMotion,
-    MonobotSensor, MotionStatistics, MotionWithRangeScale, MountedSensor, MovedSensor, OdometryMotion,
-    PLANAR_SYMMETRIES, PlanarRobot, PoseSensor, PoseWithRangeScale, PositionSensor, RangeBearing,
-    RangeBearingSensor, RangeBearingSensorWithScale, RelativePosition, RelativePositionSensor,
-    SequentialMotion, UnknownMotion, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    DriftingPoseSensor, ExternalError, ExternalParams, HeadingDriftSensor, HeadingSensor, LocalPlane,
+    MapMeasurement, MonobotMotion, MonobotSensor, MotionStatistics, MotionWithRangeScale, MountedSensor,
+    MovedSensor, OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot, PoseSensor, PoseWithRangeScale,
+    PositionSensor, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, RelativePosition,
+    RelativePositionSensor, SequentialMotion, UnknownMotion, VelocityControl, VelocityMotion, point_symmetry,
+    pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};

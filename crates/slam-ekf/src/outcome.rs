@@ -52,6 +52,26 @@ where
     Unusable,
 }
 
+impl<Z: Manifold<Scalar = f64>> ObservationOutcome<Z>
+where
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
+{
+    /// Its name in logs and reports.
+    pub fn event_name(&self) -> &'static str {
+        match self {
+            Self::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "observation_downweighted",
+            Self::Accepted { .. } => "observation_accepted",
+            Self::Rejected { .. } => "observation_gated",
+            Self::Initialized { .. } => "new_landmark",
+            Self::Restarted { .. } => "landmark_restarted",
+            Self::Ambiguous => "observation_ambiguous",
+            Self::Unlabelled => "observation_unlabelled",
+            Self::Duplicate { .. } => "observation_duplicate",
+            Self::Unusable => "observation_unusable",
+        }
+    }
+}
+
 /// The outcome of every observation of a step, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UpdateReport<Z: Manifold<Scalar = f64>>

@@ -6,7 +6,7 @@ mod common;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::{Angle, LieGroup, Manifold, Pose2, laws};
+use wayfix_estimation_traits::{Angle, LieGroup, Manifold, MotionModel, Pose2, SensorModel, laws};
 use wayfix_slam_ekf::observability::ObservabilityRecorder;
 use wayfix_slam_ekf::{
     EkfSlam, ExternalError, ExternalParams, HeadingSensor, KnownIds, LocalPlane, MovedSensor, OdometryMotion,
@@ -51,7 +51,6 @@ fn external_sensors_obey_the_laws_of_sensors() {
 /// Eq. 27 has the identity for the position where the error is in world axes: turned there, ours is the same.
 #[test]
 fn position_jacobian_is_the_identity_in_world_axes() {
-    use wayfix_estimation_traits::SensorModel;
     let sensor = PositionSensor { antenna: Vector2::zeros(), ..POSITION };
     for pose in poses() {
         let in_world = sensor.jacobian(&pose) * pose.rotation_matrix().transpose().to_homogeneous();
@@ -80,7 +79,6 @@ fn one_position_sensor_makes_a_moving_robot_observable() {
         if step > 0 {
             let increment = Pose2::new(0.5, 0.0, 0.1);
             let motion = OdometryMotion::default();
-            use wayfix_estimation_traits::MotionModel;
             let jacobian = motion.jacobian(slam.robot(), &increment);
             slam.predict(&motion, &increment).unwrap();
             recorder.record_motion(&nalgebra::DMatrix::from_fn(3, 3, |row, column| jacobian[(row, column)]));

@@ -36,12 +36,13 @@ fn seen_pose(seconds: i32, covariance: [f64; 36]) -> Encoder {
 }
 
 fn measured(records: &[Record]) -> Vec<&PoseMeasurement> {
-    let measured = |record: &Record| matches!(record.data, RecordData::PoseMeasurement(_));
-    let measurement = |record| match record {
-        &Record { data: RecordData::PoseMeasurement(ref measured), .. } => measured,
-        _ => panic!("filtered"),
-    };
-    records.iter().filter(|record| measured(record)).map(measurement).collect()
+    records
+        .iter()
+        .filter_map(|record| match &record.data {
+            RecordData::PoseMeasurement(measured) => Some(measured),
+            _ => None,
+        })
+        .collect()
 }
 
 #[test]

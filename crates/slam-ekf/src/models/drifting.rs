@@ -1,5 +1,5 @@
-use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix4, OMatrix, Vector4};
-use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, TangentMatrix};
+use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix1, Matrix4, OMatrix, Vector1, Vector4};
+use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, SensorModel, TangentMatrix};
 
 use super::OdometryMotion;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
@@ -147,6 +147,22 @@ where
             robot_jacobian: widened(&new.robot_jacobian),
             covariance: new.covariance,
         }
+    }
+}
+
+/// Measures the heading drift of odometry, with its variance, rad²/m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadingDriftSensor(pub f64);
+
+impl SensorModel for HeadingDriftSensor {
+    type State = DriftingPose;
+    type Measurement = Vector1<f64>;
+
+    fn expected(&self, robot: &DriftingPose) -> Vector1<f64> {
+        Vector1::new(robot.heading_drift)
+    }
+    fn noise(&self, _: &DriftingPose) -> Matrix1<f64> {
+        Matrix1::new(self.0)
     }
 }
 

@@ -20,10 +20,10 @@ mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use correlated_noise::CorrelatedNoise;
-pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor};
+pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor, HeadingDriftSensor};
 pub use external::{
-    ExternalError, ExternalParams, HeadingSensor, LocalPlane, MovedSensor, PlanarRobot, PoseSensor,
-    PositionSensor,
+    ExternalError, ExternalParams, HeadingSensor, LocalPlane, MapMeasurement, MovedSensor, PlanarRobot,
+    PoseSensor, PositionSensor,
 };
 pub use increment::OdometryMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};

@@ -13,7 +13,7 @@ use super::{
     MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing, state::PointState,
 };
 use crate::{
-    slam::{AssociationRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -110,11 +110,7 @@ impl FrontEnd for PointFrontEnd {
     }
 
     /// The filter makes the whole motion.
-    fn motion_to(
-        &mut self,
-        stamp: Stamp,
-        estimator: &mut Points,
-    ) -> Result<Option<(Pose2<f64>, Matrix3<f64>)>, String> {
+    fn motion_to(&mut self, stamp: Stamp, estimator: &mut Points) -> Result<Option<MotionEstimate>, String> {
         let has_started = stamp >= self.time;
         self.advance_to(stamp, estimator)?;
         Ok(has_started.then(|| (Pose2::identity(), Matrix3::zeros())))

@@ -8,7 +8,6 @@ use wayfix_slam_ekf::{
     ObservationOutcome, RobotDim, SlamAlloc, UpdateReport, observability::ObservabilityRecorder,
 };
 
-use super::event_name;
 use crate::system::EventCounts;
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
@@ -92,7 +91,7 @@ where
             recorder.record(&self.filter, &seen_landmarks(&report));
         }
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
-            let name = event_name(outcome);
+            let name = outcome.event_name();
             match outcome {
                 ObservationOutcome::Unusable => {
                     self.events.refuse(name, format!("{} is not usable", describe(measurement)));

@@ -9,6 +9,9 @@ use wayfix_slam_ekf::{
 use super::SlamEstimator;
 use crate::system::EstimateWriter;
 
+/// A motion, and its covariance in the body frame at its end.
+pub type MotionEstimate = (Pose2<f64>, Matrix3<f64>);
+
 /// What turns the records of a log into predictions and updates of EKF-SLAM, for one kind of landmark.
 pub trait FrontEnd
 where
@@ -36,8 +39,7 @@ where
     /// Parameters of sensors that do not use the map, and the antenna in the robot frame, m.
     fn external(&self) -> (&ExternalParams, Vector2<f64>);
 
-    /// Moves the robot to a stamp. Returns the motion that the filter has not made, with its covariance in the body frame at its end; `None` before
-    /// the run starts.
+    /// Moves the robot to a stamp. Returns the motion that the filter has not made; `None` before the run starts.
     ///
     /// # Errors
     /// Returns why it cannot be moved.
@@ -45,7 +47,7 @@ where
         &mut self,
         stamp: Stamp,
         estimator: &mut SlamEstimator<Self::Model>,
-    ) -> Result<Option<(Pose2<f64>, Matrix3<f64>)>, String>;
+    ) -> Result<Option<MotionEstimate>, String>;
 
     /// The stamp up to which records changed the state, where `taken_until` is the stamp of the last record.
     fn settled_until(&self, taken_until: Stamp) -> Stamp {

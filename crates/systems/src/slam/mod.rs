@@ -6,7 +6,6 @@
 mod association;
 mod estimates;
 mod estimator;
-mod event_name;
 mod external;
 mod figures;
 mod front_end;
@@ -21,9 +20,8 @@ pub use association::AssociationRule;
 pub use estimates::{SlamDrawing, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
-use event_name::event_name;
 pub(crate) use figures::summary;
-pub use front_end::{FrontEnd, FrontEndState};
+pub use front_end::{FrontEnd, FrontEndState, MotionEstimate};
 pub(crate) use increment_numbers::increment_numbers;
 pub(crate) use plots::plots_with;
 pub use run::SlamRun;

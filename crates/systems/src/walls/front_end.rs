@@ -17,7 +17,7 @@ use super::{
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
 };
 
@@ -155,11 +155,7 @@ impl FrontEnd for WallFrontEnd {
     }
 
     /// The filter stays at the last keyframe.
-    fn motion_to(
-        &mut self,
-        stamp: Stamp,
-        estimator: &mut Walls,
-    ) -> Result<Option<(Pose2<f64>, Matrix3<f64>)>, String> {
+    fn motion_to(&mut self, stamp: Stamp, estimator: &mut Walls) -> Result<Option<MotionEstimate>, String> {
         if self.moves_by_velocity {
             self.advance_to(stamp, estimator);
         }

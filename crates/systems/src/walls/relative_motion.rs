@@ -1,6 +1,6 @@
-use nalgebra::{Matrix1, Matrix3, Matrix4, Vector1, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 use serde::{Deserialize, Serialize};
-use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
+use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2};
 use wayfix_scan_match::ScanAlignment;
 use wayfix_slam_ekf::{DriftingPose, OdometryMotion};
 
@@ -154,21 +154,6 @@ impl MotionModel for RelativeMotion {
         let mut noise = self.covariance.to_homogeneous();
         noise.m44 = 0.0;
         noise
-    }
-}
-
-/// A look at the drift, with its variance, rad²/m².
-pub(super) struct DriftMeasurement(pub(super) f64);
-
-impl SensorModel for DriftMeasurement {
-    type State = DriftingPose;
-    type Measurement = Vector1<f64>;
-
-    fn expected(&self, robot: &DriftingPose) -> Vector1<f64> {
-        Vector1::new(robot.heading_drift)
-    }
-    fn noise(&self, _: &DriftingPose) -> Matrix1<f64> {
-        Matrix1::new(self.0)
     }
 }
 

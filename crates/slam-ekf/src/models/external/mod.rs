@@ -4,6 +4,7 @@
 
 mod heading_sensor;
 mod local_plane;
+mod map_measurement;
 mod moved_sensor;
 mod params;
 mod planar_robot;
@@ -12,6 +13,7 @@ mod position_sensor;
 
 pub use heading_sensor::HeadingSensor;
 pub use local_plane::LocalPlane;
+pub use map_measurement::MapMeasurement;
 pub use moved_sensor::MovedSensor;
 pub use params::{ExternalError, ExternalParams};
 pub use planar_robot::PlanarRobot;

@@ -13,7 +13,6 @@ use crate::SlamError;
 )]
 pub struct ExternalParams {
     /// Names of frames that are the frame of the map; measurements in others are refused. `enu`: the x axis of the map points east.
-    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub frames: Vec<String>,
     /// Latitude and longitude of the origin of the map, whose x axis then points east, degrees; without it WGS 84 positions are refused.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
