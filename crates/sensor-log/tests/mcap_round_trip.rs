@@ -158,6 +158,15 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
         RecordData::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
         RecordData::DetectionWidths(widths) => widths.clone(),
         RecordData::TruePosition(position) => vec![position.x, position.y],
+        RecordData::PoseMeasurement(PoseMeasurement { quantity, covariance, .. }) => {
+            let values = match quantity {
+                MeasuredQuantity::Position(position) => vec![position.x, position.y],
+                MeasuredQuantity::Geodetic { latitude, longitude } => vec![*latitude, *longitude],
+                MeasuredQuantity::Heading(heading) => vec![*heading],
+                MeasuredQuantity::Pose(pose) => vec![pose.x(), pose.y(), pose.heading()],
+            };
+            values.into_iter().chain(covariance.iter().flatten().copied()).collect()
+        }
         other => panic!("{other:?}"),
     };
     (

@@ -26,14 +26,14 @@ fn position(x: f64, y: f64) -> MeasuredQuantity {
     MeasuredQuantity::Position(Vector2::new(x, y))
 }
 
-/// A robot that drives ahead at 1 m/s for 20 s, by its odometry at 0.9 m/s, and sees a landmark in the first two seconds.
+/// A robot that drives ahead at 1 m/s for 20 s, by its odometry at 0.98 m/s, and sees a landmark in the first two seconds.
 fn drive(heading: f64) -> Vec<Record> {
     let start = Pose2::new(0.0, 0.0, heading);
     let mut records = vec![at(0.0, RecordData::TruePose(start))];
     let landmark = Vector2::new(8.0, 3.0);
     for step in 0..200 {
         let seconds = 0.1 * f64::from(step);
-        records.push(at(seconds, RecordData::Velocity(Velocity { linear: 0.9, angular: 0.0 })));
+        records.push(at(seconds, RecordData::Velocity(Velocity { linear: 0.98, angular: 0.0 })));
         let truth = start.compose(&Pose2::new(seconds, 0.0, 0.0));
         let seen = truth.inverse_transform(&start.transform(&landmark));
         let (range, bearing) = (seen.norm(), seen.y.atan2(seen.x));
@@ -61,7 +61,7 @@ fn in_map() -> ExternalParams {
 
 #[test]
 fn positions_correct_points_only_where_they_are_asked_for() {
-    let fixes = (1..20).map(|s| measured(f64::from(s), "map", position(f64::from(s), 0.0), Some(0.1)));
+    let fixes = (1..20).map(|s| measured(f64::from(s), "map", position(f64::from(s), 0.0), Some(0.05)));
     let records = with(drive(0.0), fixes);
     let error = |run: &PointRun| (run.system.filter().robot().pose.x() - 19.9).abs();
     let mut without = slam(&records, ExternalParams::default());
@@ -98,7 +98,8 @@ fn useless_measurements_are_counted_and_change_nothing() {
         let moved = (got.robot().pose.translation - expected.robot().pose.translation).norm();
         assert!(moved < 1e-9, "{record:?} moves the robot by {moved}");
         let difference = (got.covariance() - expected.covariance()).amax();
-        assert!(difference < 1e-9, "{record:?} changes the covariance by {difference}");
+        // The motion is cut at the stamp; a correction would take some 1e-4 m² off.
+        assert!(difference < 1e-6, "{record:?} changes the covariance by {difference}");
     }
 }
 
@@ -107,7 +108,7 @@ fn wgs_84_needs_a_datum_and_then_is_east_and_north() {
     let fix = |second: i32| {
         let degrees = f64::from(second) / 111_319.5; // a degree of longitude on the equator
         let fix = MeasuredQuantity::Geodetic { latitude: 0.0, longitude: 20.0 + degrees };
-        measured(f64::from(second), "wgs84", fix, Some(0.1))
+        measured(f64::from(second), "wgs84", fix, Some(0.05))
     };
     let records = with(drive(0.0), (1..20).map(fix));
     let external = ExternalParams { datum: Some([0.0, 20.0]), ..ExternalParams::default() };
