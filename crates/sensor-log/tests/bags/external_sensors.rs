@@ -99,7 +99,7 @@ fn imu_without_a_mount_is_an_assumption_that_is_said_once() {
 }
 
 #[test]
-fn poses_of_a_camera_are_measurements_and_those_of_programs_are_not() {
+fn poses_of_a_camera_are_measured_and_those_of_programs_are_not() {
     let covariance = std::array::from_fn(|index| if index % 7 == 0 { 0.25 } else { 0.0 });
     for (topic, n_measured) in [("/ceiling_camera/robot", 1), ("/amcl_pose", 0)] {
         let mut bag = Bag::new();
