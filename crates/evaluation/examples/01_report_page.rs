@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         suites.push(ReportSuite { name: name.to_owned(), runs });
     }
     let commit = wayfix_evaluation::report::commit(&std::env::current_dir()?);
-    let report = Report { suites, seed: 1, commit, machine: MachineInfo::detect() };
+    let report = Report { suites, seed: 1, commit, machine: MachineInfo::detect(), ..Report::default() };
     report.write(&folder)?;
     print!("{}", table::report(&report, table::TableStyle::of_stdout()));
     println!("{}", folder.join("index.html").display());

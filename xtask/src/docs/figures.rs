@@ -20,7 +20,7 @@ pub(super) fn run(args: &[String]) -> Result<ExitCode> {
         _ => bail!("usage: cargo xtask docs --figures [REPORT.json]"),
     };
     let text = std::fs::read_to_string(&report)
-        .with_context(|| format!("{}: `cargo xtask regress` writes it", report.display()))?;
+        .with_context(|| format!("{}: `cargo xtask regress --all` writes it", report.display()))?;
     let report: Value = serde_json::from_str(&text)?;
     for page in pages(&shell::root().join("docs"))? {
         let text = std::fs::read_to_string(&page)?;

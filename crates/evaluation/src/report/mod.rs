@@ -15,6 +15,7 @@ mod provenance;
 mod run_summary;
 pub mod table;
 mod tally;
+mod verdicts;
 mod write;
 
 pub use layout::foxglove_layout;
@@ -23,4 +24,5 @@ pub use model::{Report, ReportRun, ReportSuite};
 pub use provenance::{MachineInfo, commit};
 pub use run_summary::RunSummary;
 pub use tally::PassFailCount;
-pub use write::ReportError;
+pub use verdicts::{failures, run_line};
+pub use write::{ReportError, replace_file};

@@ -24,6 +24,9 @@ pub struct Report {
     pub commit: Option<String>,
     /// The machine.
     pub machine: MachineInfo,
+    /// Runs that are not finished, as `suite / run`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pending: Vec<String>,
 }
 
 /// Runs that belong together: `slam`, `color`.

@@ -33,8 +33,18 @@ impl Report {
         let json = serde_json::to_string_pretty(self)? + "\n";
         for (name, text) in [("report.json", json), ("index.html", html::render(self))] {
             let path = folder.join(name);
-            std::fs::write(&path, text).map_err(refused(&path))?;
+            replace_file(&path, text).map_err(refused(&path))?;
         }
         Ok(())
     }
+}
+
+/// Writes a file beside `path` and puts it in its place: a reader never sees half of it.
+/// # Errors
+/// Returns the error of the file system.
+pub fn replace_file(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let mut unfinished = path.as_os_str().to_owned();
+    unfinished.push(".tmp");
+    std::fs::write(&unfinished, content)?;
+    std::fs::rename(unfinished, path)
 }

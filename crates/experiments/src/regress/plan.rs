@@ -135,6 +135,7 @@ pub(super) fn judge(bounds: &[MetricBound], metrics: &mut Vec<Metric>) {
         });
         let metric = &mut metrics[index];
         metric.paper = bound.paper.or(metric.paper);
+        metric.open = bound.open;
         if bound.open {
             let wanted = [
                 bound.low.map(|low| format!("at least {low}")),
