@@ -6,6 +6,7 @@
 //!
 //! Times are not among the `metrics`, which have equal bits for any number of threads; times are in `timings`.
 
+mod explanation;
 pub mod html;
 mod layout;
 mod metric;
@@ -18,6 +19,7 @@ mod tally;
 mod verdicts;
 mod write;
 
+pub use explanation::explanation;
 pub use layout::foxglove_layout;
 pub use metric::{ConfidenceInterval, Metric, PeerValue};
 pub use model::{Report, ReportRun, ReportSuite};

@@ -1,5 +1,6 @@
 use anyhow::{Result, ensure};
 use wayfix_gaussian_core::ChiSquaredBand;
+use wayfix_sensor_log::Record;
 
 use super::{ComparedFilter, ConsistencySample, CorridorLaps, drive};
 use wayfix_evaluation::report::Metric;
@@ -44,11 +45,23 @@ const POSE: usize = 3;
 /// # Errors
 /// Returns an error if `n_runs` is 0, a parameter is out of range, the robot never moves or a filter fails.
 pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<ConsistencyMonteCarlo> {
+    // No two of a call share a seed.
+    over_logs(laps, n_runs, |k| laps.simulate(seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k))))
+}
+
+/// Runs the filters with the noise of `laps` over `n_runs` logs; `log` gives the k-th.
+///
+/// # Errors
+/// Returns an error if `n_runs` is 0, `log` fails, the robot never moves or a filter fails.
+pub fn over_logs(
+    laps: &CorridorLaps,
+    n_runs: u32,
+    log: impl Fn(u32) -> Result<Vec<Record>>,
+) -> Result<ConsistencyMonteCarlo> {
     ensure!(n_runs >= 1, "an average needs a run");
     let mut runs: [Vec<Vec<ConsistencySample>>; 4] = Default::default();
     for k in 0..n_runs {
-        let seed = seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k)); // no two of a call share one
-        let records = laps.simulate(seed)?;
+        let records = log(k)?;
         for (runs, kind) in runs.iter_mut().zip(ComparedFilter::ALL) {
             runs.push(drive(laps, &records, kind)?);
         }

@@ -7,6 +7,7 @@ mod estimates;
 mod figures;
 mod plots;
 mod system;
+mod totals;
 mod truth;
 
 pub use estimates::{LineDrawing, LineEstimateRecorder};

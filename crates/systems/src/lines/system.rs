@@ -1,21 +1,27 @@
-use std::time::Duration;
+use std::{convert::Infallible, time::Duration};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 
-use crate::system::{EventCounts, Stopwatch, System, largest_echo};
+use super::totals::LineTotals;
+use crate::system::{Decimated, EventCounts, Stopwatch, System, largest_echo};
 
 /// Extracts the walls of every scan of a log.
 pub struct LineSystem {
     extractor: LineExtractor,
     pose: Option<(Stamp, Pose2<f64>)>,
     mount: Pose2<f64>,
-    scans: Vec<ScanWalls>,
+    sample: Decimated<ScanWalls>,
+    latest: Option<ScanWalls>,
+    totals: LineTotals,
     true_walls: Vec<TrueWall>,
     n_scans: u64,
     events: EventCounts,
 }
+
+/// Scans that are kept for pictures.
+const MOST_SCANS: usize = 256;
 
 /// A scan and the walls in it.
 #[derive(Clone, Debug)]
@@ -43,19 +49,31 @@ impl LineSystem {
             extractor,
             pose: None,
             mount: Pose2::identity(),
-            scans: Vec::new(),
+            sample: Decimated::new(MOST_SCANS),
+            latest: None,
+            totals: LineTotals::default(),
             true_walls: Vec::new(),
             n_scans: 0,
             events: EventCounts::default(),
         })
     }
 
-    /// The processed scans, in log order.
-    pub fn scans(&self) -> &[ScanWalls] {
-        &self.scans
+    /// Some of the processed scans, evenly spaced: all of a short log, at most 256 of a long one.
+    pub fn sample(&self) -> &[ScanWalls] {
+        self.sample.kept()
     }
 
-    /// The true walls of the log.
+    /// The last processed scan.
+    pub fn latest(&self) -> Option<&ScanWalls> {
+        self.latest.as_ref()
+    }
+
+    /// Sums over all processed scans.
+    pub(super) fn totals(&self) -> &LineTotals {
+        &self.totals
+    }
+
+    /// The true walls of the log so far.
     pub fn true_walls(&self) -> &[TrueWall] {
         &self.true_walls
     }
@@ -79,7 +97,10 @@ impl LineSystem {
         let step = stopwatch.elapsed();
         let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose.compose(&self.mount));
         self.events.add("beam_without_echo", found.counts.skipped() as u64);
-        self.scans.push(ScanWalls { stamp, pose, echoes, segments: found.segments, step });
+        let scan = ScanWalls { stamp, pose, echoes, segments: found.segments, step };
+        self.totals.add(&scan, &self.true_walls);
+        let Ok(()) = self.sample.offer(|| Ok::<_, Infallible>(scan.clone()));
+        self.latest = Some(scan);
         Ok(())
     }
 }

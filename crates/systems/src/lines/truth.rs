@@ -33,18 +33,14 @@ const ON_WALL_M: f64 = 0.03;
 const IN_SIGHT: (usize, f64) = (10, 0.6);
 
 impl WallScore {
-    /// Compares the walls of scans with the true ones; `None` if there are none to compare.
-    pub fn of(scans: &[ScanWalls], truth: &[TrueWall]) -> Option<Self> {
-        let mut score = Self::default();
-        for scan in scans {
-            if let Some(pose) = &scan.pose {
-                score.add(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
-            }
+    /// Compares the walls of a scan with the true ones; nothing happens without a pose or without true walls.
+    pub(super) fn add(&mut self, scan: &ScanWalls, truth: &[TrueWall]) {
+        if let Some(pose) = scan.pose.as_ref().filter(|_| !truth.is_empty()) {
+            self.add_seen(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
         }
-        (score.n_true + score.n_false + score.n_visible > 0 && !truth.is_empty()).then_some(score)
     }
 
-    fn add(&mut self, scan: &ScanWalls, truth: &[Wall]) {
+    fn add_seen(&mut self, scan: &ScanWalls, truth: &[Wall]) {
         let mut found = BTreeSet::new();
         for segment in &scan.segments {
             let apart = |wall: &Wall| wall.distance(&segment.start).max(wall.distance(&segment.end));

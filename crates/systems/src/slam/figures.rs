@@ -1,6 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::{TrajectorySample, trajectory_errors},
+    errors::{TrajectorySample, relative_errors, trajectory_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_slam_ekf::{
@@ -39,10 +39,14 @@ where
     let samples = run.samples();
     let errors_of = |samples: Vec<TrajectorySample>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
-    if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
+    let of_filter: Vec<TrajectorySample> = samples.iter().map(|(_, sample)| *sample).collect();
+    let relative = relative_errors(&of_filter);
+    if let Some(errors) = errors_of(of_filter) {
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
         metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
+        metrics.extend(relative.per_meter.map(|error| Metric::new("rpe_m_per_m", error, "m/m")));
+        metrics.extend(relative.per_radian.map(|error| Metric::new("rpe_rad_per_rad", error, "rad/rad")));
         let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }

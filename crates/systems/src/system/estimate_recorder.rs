@@ -34,6 +34,7 @@ pub trait EstimateDrawing: Default {
 pub struct EstimateRecorder<D: EstimateDrawing> {
     writer: EstimateWriter,
     drawing: D,
+    has_echo: bool,
     failure: Option<LogError>,
 }
 
@@ -53,7 +54,12 @@ impl<D: EstimateDrawing> EstimateRecorder<D> {
     pub fn new(sinks: MessageSinks, origin: LogFormat) -> Result<Self, LogError> {
         let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
-        Ok(Self { writer, drawing: D::default(), failure: None })
+        Ok(Self { writer, drawing: D::default(), has_echo: true, failure: None })
+    }
+
+    /// Writes the estimates only, without the records of the log.
+    pub fn without_echo(self) -> Self {
+        Self { has_echo: false, ..self }
     }
 
     /// Writes a record of the log and the estimates after it. A failure is kept until [`finish`](Self::finish).
@@ -75,6 +81,14 @@ impl<D: EstimateDrawing> EstimateRecorder<D> {
     }
 
     fn write(&mut self, record: &Record, system: &D::System) -> Result<(), LogError> {
+        if self.has_echo {
+            self.echo(record)?;
+        }
+        self.drawing.draw(record, system, &mut self.writer)
+    }
+
+    /// Writes the record itself.
+    fn echo(&mut self, record: &Record) -> Result<(), LogError> {
         let written = match &record.data {
             RecordData::EstimatedPose(pose) if D::DRAWS_POSES && pose.is_finite() => {
                 self.writer.pose_in_frame(OTHER_POSES, record.stamp, topics::WORLD_FRAME, pose)
@@ -82,9 +96,8 @@ impl<D: EstimateDrawing> EstimateRecorder<D> {
             _ => self.writer.record(record),
         };
         match written {
-            Err(LogError::NotFinite { .. }) => {} // rejected by the system and counted there
-            written => written?,
+            Err(LogError::NotFinite { .. }) => Ok(()), // rejected by the system and counted there
+            written => written,
         }
-        self.drawing.draw(record, system, &mut self.writer)
     }
 }

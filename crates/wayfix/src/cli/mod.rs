@@ -101,12 +101,14 @@ pub fn main() -> ExitCode {
 }
 
 fn run(system: Run) -> Result<ExitCode> {
-    match system {
+    run::interrupt::listen()?;
+    let code = match system {
         Run::Slam(arguments) => run::run_slam::main(arguments),
         Run::Lines(arguments) => run::run_lines::main(arguments),
         Run::Color(arguments) => run::run_color::main(arguments),
         Run::Views(arguments) => run::run_views::main(arguments),
         Run::Track(arguments) => run::run_track::main(arguments),
         Run::Cml(arguments) => run::run_cml::main(*arguments),
-    }
+    };
+    code.map(run::interrupt::exit_code)
 }

@@ -47,7 +47,7 @@ impl<'a> Outputs<'a> {
     /// Destinations of messages; none without a folder and without a live view. Waits for the first live viewer.
     pub(super) fn sinks(&mut self) -> Result<MessageSinks> {
         let mut sinks: MessageSinks = Vec::new();
-        if let Some(path) = self.file(ESTIMATES) {
+        if let Some(path) = self.file(ESTIMATES).filter(|_| !self.common.no_mcap) {
             sinks.push(Box::new(McapFile::create(path)?));
             self.log = Some(ESTIMATES);
         }
@@ -61,7 +61,11 @@ impl<'a> Outputs<'a> {
         origin: LogFormat,
     ) -> Result<Option<EstimateRecorder<D>>> {
         let sinks = self.sinks()?;
-        Ok(if sinks.is_empty() { None } else { Some(EstimateRecorder::new(sinks, origin)?) })
+        if sinks.is_empty() {
+            return Ok(None);
+        }
+        let recorder = EstimateRecorder::new(sinks, origin)?;
+        Ok(Some(if self.common.no_echo { recorder.without_echo() } else { recorder }))
     }
 
     /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.

@@ -1,5 +1,6 @@
 use wayfix_sensor_log::{Log, LogEnd, LogWarning, ReadReport, Record};
 
+use super::run::interrupt;
 use wayfix_evaluation::terminal::print_message;
 use wayfix_systems::system::EventCounts;
 
@@ -29,5 +30,6 @@ pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> 
     for LogWarning { name, .. } in &read.warnings {
         events.count(name);
     }
-    read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone()).collect()
+    let of_run = read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone());
+    of_run.chain(interrupt::warning()).collect()
 }

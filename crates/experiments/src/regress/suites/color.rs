@@ -31,6 +31,8 @@ struct Settings {
     as_published: bool,
     /// Number of kinds of light to learn priors for, one Gaussian each; without it the built-in priors, of two, are used.
     lights: Option<usize>,
+    /// Seconds of the log that run with `--quick`; all of it if omitted.
+    quick_s: Option<f64>,
     /// Number of halls, for experiments over many.
     #[serde(default = "hundred")]
     n_seeds: u64,
@@ -98,11 +100,11 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let bank = priors::bank(&learned, &params)?;
     let seeds = settings.seeds(job);
     match settings.experiment {
-        Experiment::Localize => localize(job, map, &params),
-        Experiment::Withheld => experiments::withheld(&records(job)?, &map, &learned, &params, seed),
+        Experiment::Localize => localize(job, settings.quick_s, map, &params),
+        Experiment::Withheld => experiments::withheld(&records(job, settings.quick_s)?, &map, &learned, &params, seed),
         Experiment::Switching => {
             let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
-            experiments::switching(&records(job)?, &switches(job), &map, &bank, &single, &params, seed)
+            experiments::switching(&records(job, settings.quick_s)?, &switches(job), &map, &bank, &single, &params, seed)
         }
         Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
         Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
@@ -118,7 +120,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         Experiment::WithheldHallsBright => {
             experiments::withheld_in_halls(seeds, LampSetting::Bright, &map, &learned, &params)
         }
-        Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
+        Experiment::FrameTime => experiments::frame_time(&records(job, None)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
     }
 }
@@ -133,8 +135,17 @@ impl Settings {
     }
 }
 
-fn records(job: &PlannedJob<'_>) -> Result<Vec<Record>> {
-    Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
+fn records(job: &PlannedJob<'_>, quick_s: Option<f64>) -> Result<Vec<Record>> {
+    let (records, _) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+    Ok(first_seconds(records, quick_s.filter(|_| job.options.quick)))
+}
+
+/// The records of the first `seconds`, or all.
+fn first_seconds(mut records: Vec<Record>, seconds: Option<f64>) -> Vec<Record> {
+    if let (Some(seconds), Some(start)) = (seconds, records.first().map(|record| record.stamp)) {
+        records.retain(|record| record.stamp.seconds_since(start) <= seconds);
+    }
+    records
 }
 
 /// The frames at which the light of a stored log changes.
@@ -148,11 +159,17 @@ fn switches(job: &PlannedJob<'_>) -> Vec<usize> {
     }
 }
 
-fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<ReportRun> {
+fn localize(
+    job: &PlannedJob<'_>,
+    quick_s: Option<f64>,
+    map: Arc<ColorMap>,
+    params: &ColorSystemParams,
+) -> Result<ReportRun> {
     let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
     let (name, path) = job.estimates_file();
     let mut estimates = ColorEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
+    let records = first_seconds(records, quick_s.filter(|_| job.options.quick));
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleSnapshots::new(color::n_images(&records));
     let mut run = color::run(

@@ -1,10 +1,11 @@
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_scene_sim::monobot::MonobotParams;
+use wayfix_sensor_log::OpenOptions;
 
 use super::super::PlannedJob;
 use crate::{
-    consistency::{self, CorridorLaps},
+    consistency::{self, ConsistencyMonteCarlo, CorridorLaps},
     monobot::{self, WorldReference},
 };
 use wayfix_evaluation::report::{Metric, ReportRun};
@@ -29,6 +30,8 @@ enum Settings {
         #[serde(flatten)]
         noise: Noise,
     },
+    /// A stored log through all kinds of filters; `laps` has its noise.
+    Log { laps: CorridorLaps },
     /// Laps of a loop in the plane, through all kinds of filters.
     Laps { n_runs: u32, n_runs_quick: u32, laps: CorridorLaps },
 }
@@ -50,8 +53,13 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
             let figures = all.drives.first().map(monobot::plots).transpose()?.unwrap_or_default();
             Ok(ReportRun { metrics: all.metrics(), figures, ..ReportRun::default() })
         }
+        Settings::Log { laps } => {
+            let (records, _) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+            report(&consistency::over_logs(&laps, 1, |_| Ok(records.clone()))?)
+        }
         Settings::Laps { n_runs, n_runs_quick, laps } => {
-            run_laps(job, &laps, if job.options.quick { n_runs_quick } else { n_runs })
+            let n_runs = if job.options.quick { n_runs_quick } else { n_runs };
+            report(&consistency::monte_carlo(&laps, n_runs, job.options.seed)?)
         }
         Settings::Landmarks { n_landmarks, n_runs, noise } => landmarks(job, &n_landmarks, n_runs, noise),
     }
@@ -87,13 +95,12 @@ fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: No
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
-fn run_laps(job: &PlannedJob<'_>, laps: &CorridorLaps, n_runs: u32) -> Result<ReportRun> {
-    let all = consistency::monte_carlo(laps, n_runs, job.options.seed)?;
+fn report(all: &ConsistencyMonteCarlo) -> Result<ReportRun> {
     let note = format!(
-        "{n_runs} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
-        all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
+        "{} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
+        all.n_runs, all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
     );
-    let figures = vec![consistency::picture(&all)?];
+    let figures = vec![consistency::picture(all)?];
     Ok(ReportRun { metrics: all.metrics(), figures, notes: vec![note], ..ReportRun::default() })
 }
 

@@ -8,8 +8,11 @@ use wayfix_sensor_log::{LogFormat, OpenOptions};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::track::{
-    self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+use wayfix_systems::{
+    system::RunStep,
+    track::{
+        self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+    },
 };
 
 /// Settings of a run.
@@ -33,7 +36,7 @@ struct Settings {
     /// The method as published, without the additions.
     #[serde(default)]
     as_published: bool,
-    /// True boxes of a recording, relative to the folder given by `--data`.
+    /// True boxes: of a recording relative to the folder given by `--data`, of a stored log beside the plan.
     truth: Option<PathBuf>,
 }
 
@@ -76,19 +79,21 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
 }
 
 fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
-    let options = OpenOptions { format: Some(LogFormat::Images), ..OpenOptions::default() };
+    let is_stored = job.planned.log.is_some();
+    let format = if is_stored { LogFormat::Mcap } else { LogFormat::Images };
+    let options = OpenOptions { format: Some(format), ..OpenOptions::default() };
     let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
     let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
-    let truth = TrueBoxes::read(&job.recording(truth)?)?;
+    let truth = TrueBoxes::read(&if is_stored { job.beside_plan(truth) } else { job.recording(truth)? })?;
     let method = *settings.methods.first().context("give `methods`")?;
-    let rate_hz = Some(options.frame_rate_hz);
+    let rate_hz = (!is_stored).then_some(options.frame_rate_hz);
     let params = settings.params();
     let setup = TrackerConfig { method, truth, rate_hz, params, ..TrackerConfig::default() };
     let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates_file();
     let mut estimates =
         TrackEstimateRecorder::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
-    let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
+    let mut run = track::run(system, &mut log, |RunStep { system, record, .. }| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
     Ok(ReportRun { log: Some(name), figures: track::plots(&run.run_history)?, ..track::summarize(&mut run) })
 }

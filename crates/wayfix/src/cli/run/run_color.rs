@@ -12,6 +12,7 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
@@ -137,11 +138,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         &params,
         start,
         arguments.common.seed,
-        |RunStep { system, record, .. }| {
+        |RunStep { system, record, stop, .. }| {
             if let Some(estimates) = &mut estimates {
                 estimates.observe(record, system);
             }
             particles.observe(system);
+            stop.set(interrupt::is_requested());
             bar.inc(1);
         },
     );

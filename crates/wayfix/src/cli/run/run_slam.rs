@@ -26,7 +26,7 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
-use super::run_walls;
+use super::{interrupt, run_walls};
 use crate::commented::commented;
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
@@ -165,13 +165,14 @@ where
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| PeriodicSaver::new(path, arguments.save_every));
     let bar = terminal::bar(n_records, "EKF-SLAM");
-    let slam = run(&mut |RunStep { system, record, next }: RunStep<'_, SlamSystem<F>>| {
+    let slam = run(&mut |RunStep { system, record, next, stop }: RunStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
             saver.observe(record, next, || system.save());
         }
+        stop.set(interrupt::is_requested());
         bar.inc(1);
     });
     bar.finish_and_clear();

@@ -12,11 +12,12 @@ use wayfix_sensor_log::{Log, LogFormat, OpenOptions};
 use wayfix_visual_tracking::BoundingBox;
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     settings::from_toml,
-    system::{Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
     track::{
         self, InitialTargetRegion, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig,
         TrackingMethod, TrueBoxes, parse_box,
@@ -113,10 +114,11 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let setup = TrackerConfig { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = terminal::counter("tracking");
-    let track = track::run(system, &mut log, |system, record| {
+    let track = track::run(system, &mut log, |RunStep { system, record, stop, .. }| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
+        stop.set(interrupt::is_requested());
         bar.set_position(system.n_frames() as u64);
     });
     bar.finish_and_clear();

@@ -20,6 +20,7 @@ use super::super::{
     outputs::Outputs,
     read_problems::{add_read_problems, read_all},
 };
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
@@ -60,9 +61,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         start,
         &params,
         arguments.common.seed,
-        |RunStep { system, record, .. }| {
+        |RunStep { system, record, stop, .. }| {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
+            stop.set(interrupt::is_requested());
             bar.inc(1);
         },
     );
