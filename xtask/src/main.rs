@@ -18,8 +18,9 @@ use std::process::ExitCode;
 const HELP: &str = "\
 Usage: cargo xtask TASK [OPTIONS]
 
-  regress [SUITE…]   run the systems on stored logs, compare figures with bounds, write the report
-                     [--data DIR] [--out DIR] [--seed N] [--quick] [--bless] [--threads N]
+  regress [SUITE|RUN…]   run the systems on stored logs, compare figures with bounds, write the report after every run
+                     [--data DIR] [--out DIR] [--seed N] [--quick] [--all] [--resume] [--bless] [--threads N]
+                     a suite, a run or --all runs the experiments too
                      DIR of --data defaults to $WAYFIX_DATA, of --out to target/regress
   fixtures           rebuild every stored log from its seed; --check compares and writes nothing
   ci                 what CI runs, cheap steps first; --from STEP resumes

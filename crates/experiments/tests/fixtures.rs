@@ -23,7 +23,9 @@ fn the_stored_logs_are_what_their_seeds_give_and_light() {
     let stored = check(STORED).unwrap_or_else(|error| panic!("{error}"));
     let n_bytes: usize = stored.iter().map(|log| log.n_bytes).sum();
     // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, all together below 20 MB.
-    let with_camera = |log: &&StoredFixture| ["color_", "store_", "film_", "scene_"].iter().any(|kind| log.name.starts_with(kind));
+    let with_camera = |log: &&StoredFixture| {
+        ["color_", "store_", "film_", "scene_"].iter().any(|kind| log.name.starts_with(kind))
+    };
     let most = |log: &StoredFixture| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
     assert!(stored.iter().all(|log| with_camera(&log) || log.n_bytes < most(log)), "{stored:?}");
     assert!(n_bytes < 20_000_000, "{stored:?}");

@@ -36,7 +36,8 @@ pub fn relative_errors(samples: &[TrajectorySample]) -> RelativeErrors {
         radians.push(radians[radians.len() - 1] + turned);
     }
     let error = |from: usize, to: usize| {
-        let motion = |of: fn(&TrajectorySample) -> Pose2<f64>| of(&samples[from]).inverse().compose(&of(&samples[to]));
+        let motion =
+            |of: fn(&TrajectorySample) -> Pose2<f64>| of(&samples[from]).inverse().compose(&of(&samples[to]));
         let (estimate, truth) = (motion(|sample| sample.estimate), motion(|sample| sample.truth));
         let off = truth.inverse().compose(&estimate);
         (off.translation.norm(), off.heading().abs())

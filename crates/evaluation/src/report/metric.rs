@@ -144,7 +144,18 @@ impl From<StoredMetric> for Metric {
     fn from(stored: StoredMetric) -> Self {
         let StoredMetric { name, value, unit, low, high, paper, pass: _, spread, peer, bound_source, open } =
             stored;
-        Self { name, value: value.unwrap_or(f64::NAN), unit, spread, low, high, paper, peer, bound_source, open }
+        Self {
+            name,
+            value: value.unwrap_or(f64::NAN),
+            unit,
+            spread,
+            low,
+            high,
+            paper,
+            peer,
+            bound_source,
+            open,
+        }
     }
 }
 

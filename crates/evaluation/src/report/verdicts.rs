@@ -21,7 +21,9 @@ pub fn run_line(suite: &str, run: &ReportRun, style: TableStyle) -> String {
     };
     let verdict = match (&run.error, run.first_failure()) {
         (Some(error), _) => format!("ended early: {error}"),
-        (None, Some(metric)) => format!("{failed} of {} not within bounds: {}", passed + failed, against_bounds(metric)),
+        (None, Some(metric)) => {
+            format!("{failed} of {} not within bounds: {}", passed + failed, against_bounds(metric))
+        }
         (None, None) if passed == 0 => "no bounds".to_owned(),
         (None, None) => format!("{passed} within bounds"),
     };
@@ -32,7 +34,8 @@ pub fn run_line(suite: &str, run: &ReportRun, style: TableStyle) -> String {
 pub fn failures(report: &Report, style: TableStyle) -> String {
     let mut text = String::new();
     for (suite, failed) in report.runs().filter(|(_, run)| run.tally().failed > 0) {
-        text += &format!("\n{suite} / {} ({})\n{}", failed.name, duration(failed.seconds), run(failed, style));
+        text +=
+            &format!("\n{suite} / {} ({})\n{}", failed.name, duration(failed.seconds), run(failed, style));
     }
     text + "\n" + &tally(report)
 }
@@ -57,7 +60,8 @@ pub(super) fn tally(report: &Report) -> String {
 /// A figure and the bounds that it misses.
 fn against_bounds(metric: &Metric) -> String {
     let bounds = [("at least", metric.low), ("at most", metric.high)];
-    let bounds = bounds.into_iter().filter_map(|(words, bound)| Some(format!("{words} {}", significant(bound?))));
+    let bounds =
+        bounds.into_iter().filter_map(|(words, bound)| Some(format!("{words} {}", significant(bound?))));
     let bounds: Vec<String> = bounds.collect();
     format!("{} {}, {}", metric.name, significant(metric.value), bounds.join(" and "))
 }

@@ -11,7 +11,8 @@ use wayfix_evaluation::{
 
 use super::session::RegressSession;
 use crate::regress::{
-    CampaignShard, RegressOptions, RunCosts, RunSelection, ShardResults, calibration_seconds, cells, run_shard,
+    CampaignShard, RegressOptions, RunCosts, RunSelection, ShardResults, calibration_seconds, cells,
+    run_shard,
 };
 
 /// Run every system on the stored logs, and compare the figures with their bounds.

@@ -81,7 +81,8 @@ fn worst_drop(curve: &Curve, switches: &[usize]) -> f64 {
         let at = switch as f64;
         between(at - AROUND, at) - between(at, at + AROUND)
     };
-    let is_shown = |switch: &&usize| curve.last().is_some_and(|(last, _)| *last >= **switch as f64 + AROUND - 1.0);
+    let is_shown =
+        |switch: &&usize| curve.last().is_some_and(|(last, _)| *last >= **switch as f64 + AROUND - 1.0);
     switches.iter().filter(is_shown).map(fall).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -38,9 +38,12 @@ impl EstimatedTime {
         let Self { n_runs, seconds, n_unknown } = *self;
         let minutes = seconds / n_threads.max(1) as f64 / 60.0;
         let time = match n_unknown {
+            _ if n_runs == 0 => "nothing to do".to_owned(),
             _ if n_unknown == n_runs => "how long they take is not known".to_owned(),
             0 => format!("about {minutes:.1} minutes on {n_threads} threads"),
-            n => format!("about {minutes:.1} minutes on {n_threads} threads, and {n} of them nobody has timed"),
+            n => {
+                format!("about {minutes:.1} minutes on {n_threads} threads, and {n} of them nobody has timed")
+            }
         };
         format!("{n_runs} runs, {time}")
     }

@@ -62,7 +62,11 @@ impl ShardResults {
         let svgs = |run: &ReportRun| run.figures.iter().map(|figure| figure.svg.clone()).collect();
         let runs = done
             .iter()
-            .map(|CompletedRun { cell, run }| PartRun { cell: cell.clone(), run: run.clone(), svgs: svgs(run) })
+            .map(|CompletedRun { cell, run }| PartRun {
+                cell: cell.clone(),
+                run: run.clone(),
+                svgs: svgs(run),
+            })
             .collect();
         Ok(Self { campaign, runs })
     }
@@ -107,7 +111,11 @@ impl ShardResults {
     ///
     /// # Errors
     /// Returns an error if the file is of another campaign or not usable.
-    pub fn finished(folder: &Path, options: &RegressOptions, shard: CampaignShard) -> Result<Vec<CompletedRun>> {
+    pub fn finished(
+        folder: &Path,
+        options: &RegressOptions,
+        shard: CampaignShard,
+    ) -> Result<Vec<CompletedRun>> {
         if !folder.join(FILE).exists() {
             return Ok(Vec::new());
         }

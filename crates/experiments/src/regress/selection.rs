@@ -51,8 +51,9 @@ impl RunSelection {
             runs.extend(plan.run.into_iter().map(|run| (*suite, format!("{suite}/{}", run.name))));
         }
         for name in names.iter().map(AsRef::as_ref) {
-            let is_meant =
-                |(suite, run): &&(&str, String)| *suite == name || run == name || run[suite.len() + 1..] == *name;
+            let is_meant = |(suite, run): &&(&str, String)| {
+                *suite == name || run == name || run[suite.len() + 1..] == *name
+            };
             let meant: Vec<_> = runs.iter().filter(is_meant).collect();
             if meant.is_empty() {
                 bail!("there is no suite or run `{name}`{}", nearest(name, &known, &runs));
@@ -69,8 +70,10 @@ impl RunSelection {
 
     /// Whether it contains this run.
     pub fn takes(&self, suite: &str, run: &str) -> bool {
-        let is_named = |name: &String| name.strip_prefix(suite).is_some_and(|rest| rest.strip_prefix('/') == Some(run));
-        self.suites.iter().any(|name| name == suite) && (self.runs.is_empty() || self.runs.iter().any(is_named))
+        let is_named =
+            |name: &String| name.strip_prefix(suite).is_some_and(|rest| rest.strip_prefix('/') == Some(run));
+        self.suites.iter().any(|name| name == suite)
+            && (self.runs.is_empty() || self.runs.iter().any(is_named))
     }
 
     fn add_suite(&mut self, suite: &str) {

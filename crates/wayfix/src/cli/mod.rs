@@ -1,8 +1,9 @@
 //! The command line: one command a file.
 
 mod common;
-mod completions;
+mod compare;
 mod convert;
+mod help;
 mod info;
 mod input;
 #[cfg_attr(not(feature = "live"), path = "no_live.rs")]
@@ -33,6 +34,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 ///                                                 a target in every image, from its box in the first
 ///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
+///   wayfix compare results other-results           figures of two reports side by side
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
 struct Arguments {
@@ -49,7 +51,10 @@ enum Command {
     Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
-    Completions(completions::Arguments),
+    Compare(compare::Arguments),
+    Doctor(help::doctor::Arguments),
+    Completions(help::completions::Arguments),
+    Manual(help::manual::Arguments),
     /// Make pictures to try a system on.
     #[command(subcommand)]
     Simulate(simulate::Command),
@@ -88,7 +93,10 @@ pub fn main() -> ExitCode {
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
-        Command::Completions(arguments) => completions::main(arguments),
+        Command::Compare(arguments) => compare::main(arguments),
+        Command::Doctor(arguments) => help::doctor::main(&arguments),
+        Command::Completions(arguments) => help::completions::main(arguments),
+        Command::Manual(arguments) => help::manual::main(arguments),
         Command::Simulate(command) => simulate::main(command),
     };
     match result {

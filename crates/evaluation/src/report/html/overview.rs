@@ -6,7 +6,8 @@ use crate::plot::escape;
 /// Verdict, origin and contents. A run of one's own log has neither bounds nor a revision: what was found and doubted stands there instead.
 pub(super) fn header(report: &Report) -> String {
     let seconds: f64 = report.runs().map(|(_, run)| run.seconds).sum();
-    let revision = report.commit.as_deref().map(|commit| ("commit", format!("<code>{}</code>", escape(commit))));
+    let revision =
+        report.commit.as_deref().map(|commit| ("commit", format!("<code>{}</code>", escape(commit))));
     let facts = revision.into_iter().chain([
         ("seed", report.seed.to_string()),
         ("machine", escape(&report.machine.to_string())),
@@ -48,7 +49,8 @@ pub(super) fn comparison(suite: &ReportSuite, k: usize) -> String {
 
 fn verdict(report: &Report) -> String {
     let PassFailCount { passed, failed } = report.tally();
-    let paragraph = |class: &str, words: &str| format!("<p class=\"verdict {class}\">{}</p>\n", escape(words));
+    let paragraph =
+        |class: &str, words: &str| format!("<p class=\"verdict {class}\">{}</p>\n", escape(words));
     let mut text = match (passed, failed) {
         (0, 0) => paragraph("open", &found(report)),
         (_, 0) => paragraph("pass", &format!("All {passed} bounded figures are within their bounds")),
@@ -84,7 +86,9 @@ fn open(report: &Report) -> String {
     let n = report.open_metrics().count();
     match n {
         0 => String::new(),
-        n => format!("<details><summary>{n} open: wanted, not counted</summary>\n<ul>\n{items}</ul></details>\n"),
+        n => format!(
+            "<details><summary>{n} open: wanted, not counted</summary>\n<ul>\n{items}</ul></details>\n"
+        ),
     }
 }
 

@@ -101,10 +101,20 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let seeds = settings.seeds(job);
     match settings.experiment {
         Experiment::Localize => localize(job, settings.quick_s, map, &params),
-        Experiment::Withheld => experiments::withheld(&records(job, settings.quick_s)?, &map, &learned, &params, seed),
+        Experiment::Withheld => {
+            experiments::withheld(&records(job, settings.quick_s)?, &map, &learned, &params, seed)
+        }
         Experiment::Switching => {
             let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
-            experiments::switching(&records(job, settings.quick_s)?, &switches(job), &map, &bank, &single, &params, seed)
+            experiments::switching(
+                &records(job, settings.quick_s)?,
+                &switches(job),
+                &map,
+                &bank,
+                &single,
+                &params,
+                seed,
+            )
         }
         Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
         Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),

@@ -93,7 +93,8 @@ fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let (name, path) = job.estimates_file();
     let mut estimates =
         TrackEstimateRecorder::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
-    let mut run = track::run(system, &mut log, |RunStep { system, record, .. }| estimates.observe(record, system))?;
+    let mut run =
+        track::run(system, &mut log, |RunStep { system, record, .. }| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
     Ok(ReportRun { log: Some(name), figures: track::plots(&run.run_history)?, ..track::summarize(&mut run) })
 }

@@ -33,7 +33,8 @@ pub(in crate::cli) fn is_requested() -> bool {
 
 /// The warning of a run that ended early.
 pub(in crate::cli) fn warning() -> Option<String> {
-    is_requested().then(|| "Ctrl-C ended the run early: all figures are of the part of the log before".to_owned())
+    is_requested()
+        .then(|| "Ctrl-C ended the run early: all figures are of the part of the log before".to_owned())
 }
 
 /// The exit code, with that of Ctrl-C where it was pressed.

@@ -9,7 +9,7 @@ use wayfix_evaluation::terminal::print;
 /// Print the script that completes `wayfix` in a shell.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
-pub(super) struct Arguments {
+pub(in crate::cli) struct Arguments {
     /// The shell.
     shell: Shell,
 }
@@ -20,9 +20,9 @@ Examples:
   wayfix completions zsh > ~/.zfunc/_wayfix
   wayfix completions fish > ~/.config/fish/completions/wayfix.fish";
 
-pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut script = Vec::new();
-    generate(arguments.shell, &mut super::Arguments::command(), "wayfix", &mut script);
+    generate(arguments.shell, &mut super::super::Arguments::command(), "wayfix", &mut script);
     print(String::from_utf8_lossy(&script))?;
     Ok(ExitCode::SUCCESS)
 }
