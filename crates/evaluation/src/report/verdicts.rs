@@ -59,11 +59,14 @@ pub(super) fn tally(report: &Report) -> String {
 
 /// A figure and the bounds that it misses.
 fn against_bounds(metric: &Metric) -> String {
-    let bounds = [("at least", metric.low), ("at most", metric.high)];
+    let Metric { name, value, low, high, .. } = metric;
+    if !value.is_finite() {
+        return format!("{name} was not measured");
+    }
+    let bounds = [("at least", low), ("at most", high)];
     let bounds =
-        bounds.into_iter().filter_map(|(words, bound)| Some(format!("{words} {}", significant(bound?))));
-    let bounds: Vec<String> = bounds.collect();
-    format!("{} {}, {}", metric.name, significant(metric.value), bounds.join(" and "))
+        bounds.into_iter().filter_map(|(words, bound)| Some(format!("{words} {}", significant((*bound)?))));
+    format!("{name} {}, {}", significant(*value), bounds.collect::<Vec<_>>().join(" and "))
 }
 
 impl Report {

@@ -3,7 +3,7 @@ use std::{
     process::ExitCode,
 };
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use wayfix_evaluation::{
     report::{Report, failures, table, table::TableStyle},
     terminal::print,
@@ -96,9 +96,10 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let cells_done: Vec<_> = finished.iter().map(|done| done.cell.clone()).collect();
     let session = RegressSession::new(&options, shard, finished);
     threads.install(|| run_shard(&options, shard, &cells_done, &|done| session.add(done)))?;
-    let done = session.finish()?;
+    let (done, run_costs) = session.finish()?;
     if arguments.store_costs {
-        RunCosts::store(&options, &done, calibration_s)?;
+        ensure!(threads.current_num_threads() == 1, "--store-costs needs --threads 1");
+        RunCosts::store(&options, &run_costs, calibration_s)?;
     }
 
     if shard.is_part() {

@@ -19,7 +19,7 @@ pub mod suites;
 pub use assemble::assemble;
 pub use blessed::ReferenceFigures;
 pub use campaign::{SeededRun, cells};
-pub use costs::{EstimatedTime, RunCosts, calibration_seconds};
+pub use costs::{EstimatedTime, RunCosts, calibration_seconds, thread_seconds};
 pub use job::PlannedJob;
 pub use part::{ShardResults, join};
 pub use plan::{MetricBound, PlannedMean, PlannedRun, SuitePlan};
