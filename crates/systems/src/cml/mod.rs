@@ -5,8 +5,6 @@
 
 mod estimates;
 mod figures;
-mod histogram;
-pub use histogram::histogram;
 mod odometry;
 mod params;
 mod plan;
@@ -16,6 +14,8 @@ pub mod recording;
 mod run;
 mod saved;
 mod system;
+
+pub use wayfix_evaluation::plot::histogram;
 
 pub use estimates::{CmlDrawing, CmlEstimateRecorder};
 pub use figures::{summarize, task};

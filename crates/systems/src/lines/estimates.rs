@@ -41,10 +41,10 @@ impl system::EstimateDrawing for LineDrawing {
         if let RecordData::LaserMount(_) = record.data {
             self.frame = topics::LASER_FRAME;
         }
-        let Some(scan) = system.latest().filter(|_| system.totals().n_used > self.n_written) else {
+        let Some(scan) = system.latest().filter(|_| system.totals.n_used > self.n_written) else {
             return Ok(());
         };
-        self.n_written = system.totals().n_used;
+        self.n_written = system.totals.n_used;
         let drawings = drawings(scan, self.n_walls);
         self.n_walls = scan.segments.len();
         writer.scene_update("/walls", scan.stamp, self.frame, &drawings)

@@ -4,7 +4,7 @@ use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(system: &mut LineSystem) -> ReportRun {
-    let totals = system.totals().clone();
+    let totals = system.totals.clone();
     let n_used = totals.n_used as f64;
     let mut metrics = vec![
         Metric::new("n_scans", system.n_scans() as f64, ""),

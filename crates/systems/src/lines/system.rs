@@ -5,7 +5,8 @@ use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtract
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 
 use super::totals::LineTotals;
-use crate::system::{Decimated, EventCounts, Stopwatch, System, largest_echo};
+use crate::system::{EventCounts, Stopwatch, System, largest_echo};
+use wayfix_evaluation::plot::Decimated;
 
 /// Extracts the walls of every scan of a log.
 pub struct LineSystem {
@@ -14,7 +15,7 @@ pub struct LineSystem {
     mount: Pose2<f64>,
     sample: Decimated<ScanWalls>,
     latest: Option<ScanWalls>,
-    totals: LineTotals,
+    pub(super) totals: LineTotals,
     true_walls: Vec<TrueWall>,
     n_scans: u64,
     events: EventCounts,
@@ -66,11 +67,6 @@ impl LineSystem {
     /// The last processed scan.
     pub fn latest(&self) -> Option<&ScanWalls> {
         self.latest.as_ref()
-    }
-
-    /// Sums over all processed scans.
-    pub(super) fn totals(&self) -> &LineTotals {
-        &self.totals
     }
 
     /// The true walls of the log so far.

@@ -1,6 +1,5 @@
 //! The common pipeline: records in time order → a [`System`] → estimates, events and figures.
 
-mod decimated;
 mod drive;
 mod estimate_recorder;
 mod events;
@@ -13,9 +12,7 @@ mod odometry_lag;
 mod overlap;
 mod plausible_increment;
 mod robot_drawing;
-mod stopwatch;
 
-pub(crate) use decimated::Decimated;
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawing, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
@@ -28,7 +25,7 @@ pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
 pub use plausible_increment::IncrementPlausibilityCheck;
 pub(crate) use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
-pub use stopwatch::Stopwatch;
+pub use wayfix_evaluation::terminal::Stopwatch;
 
 use wayfix_sensor_log::Record;
 

@@ -3,7 +3,7 @@ use wayfix_visual_tracking::{TargetEstimate, TrackStatus};
 
 use super::super::{TargetColorDistribution, TargetTruth, TrackFrameResult};
 use super::overlay;
-use crate::system::Decimated;
+use wayfix_evaluation::plot::Decimated;
 
 /// Maximum number of film frames.
 const MOST_FRAMES: usize = 12;

@@ -1,4 +1,4 @@
-use wayfix_evaluation::plot::{LinePlot, PlotSeries};
+use super::{LinePlot, PlotSeries};
 
 /// Shares of the steps by error, in classes of equal width, as outlines. The last class holds all larger errors.
 pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinePlot {

@@ -2,7 +2,7 @@ use std::convert::Infallible;
 
 /// Evenly spaced values of a stream of unknown length: if there are too many, every second one is dropped.
 #[derive(Clone, Debug)]
-pub(crate) struct Decimated<T> {
+pub struct Decimated<T> {
     most: usize,
     stride: usize,
     n_seen: usize,
@@ -11,12 +11,12 @@ pub(crate) struct Decimated<T> {
 
 impl<T> Decimated<T> {
     /// Keeps at most `most` values, and at least half as many once full.
-    pub(crate) fn new(most: usize) -> Self {
+    pub fn new(most: usize) -> Self {
         Self { most: most.max(2), stride: 1, n_seen: 0, kept: Vec::new() }
     }
 
     /// Offers the next value.
-    pub(crate) fn push(&mut self, value: T) {
+    pub fn push(&mut self, value: T) {
         let Ok(()) = self.offer(|| Ok::<_, Infallible>(value));
     }
 
@@ -24,7 +24,7 @@ impl<T> Decimated<T> {
     ///
     /// # Errors
     /// Returns the error of `make`.
-    pub(crate) fn offer<E>(&mut self, make: impl FnOnce() -> Result<T, E>) -> Result<(), E> {
+    pub fn offer<E>(&mut self, make: impl FnOnce() -> Result<T, E>) -> Result<(), E> {
         let wanted = self.n_seen.is_multiple_of(self.stride);
         self.n_seen += 1;
         if !wanted {
@@ -47,12 +47,12 @@ impl<T> Decimated<T> {
     }
 
     /// The kept values, in order.
-    pub(crate) fn kept(&self) -> &[T] {
+    pub fn kept(&self) -> &[T] {
         &self.kept
     }
 
     /// Stride between kept values.
-    pub(crate) fn stride(&self) -> usize {
+    pub fn stride(&self) -> usize {
         self.stride
     }
 }
