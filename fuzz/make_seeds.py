@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the first inputs of both fuzz targets from the golden messages of crates/sensor-log/tests/data.
+"""Makes the first inputs of the fuzz targets: golden messages of crates/sensor-log/tests/data, and small pose graphs.
 
-    fuzz/make_seeds.py        writes fuzz/corpus/ros_message and fuzz/corpus/ros_bag
+    fuzz/make_seeds.py        writes fuzz/corpus/ros_message, fuzz/corpus/ros_bag and fuzz/corpus/g2o
 """
 
 import pathlib
@@ -22,8 +22,22 @@ TOPICS = {
     "tf2_msgs/msg/TFMessage": [4, 5],
 }
 
+GRAPHS = [
+    "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 1.5\nVERTEX_XY 7 2 2\nFIX 1\n"
+    "EDGE_SE2 0 1 1 0 1.57 1 0 0 1 0 1\nEDGE_SE2_XY 1 7 2 -1 1 0 1\n",
+    "EDGE_SE2 0 1 1 0 1.57 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 1.57 2 0.1 0 2 0 3\nEDGE_SE2 2 0 1 1 3.1 1 0 0 1 0 1\n",
+    "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1 0 0 0 0 0.7071068 0.7071068\nVERTEX_TRACKXYZ 5 1 2 3\n"
+    "PARAMS_SE3OFFSET 3 0.1 0.2 0.3 0 0 0.7071068 0.7071068\n"
+    "EDGE_SE3:QUAT 0 1 1 0 0.1 0 0 0.7 0.714 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n"
+    "EDGE_SE3_TRACKXYZ 1 5 3 1 2 3 2 0.5 0 1 0 1\n",
+]
+
 
 def main():
+    graphs = FUZZ / "corpus" / "g2o"
+    graphs.mkdir(parents=True, exist_ok=True)
+    for number, text in enumerate(GRAPHS):
+        (graphs / f"{number}").write_text(text)
     folders = [FUZZ / "corpus" / name for name in ("ros_message", "ros_bag")]
     for folder in folders:
         folder.mkdir(parents=True, exist_ok=True)

@@ -9,7 +9,7 @@ use std::io::Cursor;
 use libfuzzer_sys::fuzz_target;
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
-use wayfix_sensor_log::{OpenOptions, open};
+use wayfix_sensor_log::{LogOpenOptions, open};
 
 const TOPICS: [(&str, &str); 14] = [
     ("/scan", "sensor_msgs/msg/LaserScan"),
@@ -32,7 +32,7 @@ fuzz_target!(|input: &[u8]| {
     let bag = bag(input);
     let mut file = tempfile::Builder::new().suffix(".mcap").tempfile().expect("a place for the bag");
     std::io::Write::write_all(&mut file, &bag).expect("room for the bag");
-    if let Ok(log) = open(file.path(), &OpenOptions::default()) {
+    if let Ok(log) = open(file.path(), &LogOpenOptions::default()) {
         let (records, _) = log.read_all();
         assert!(records.is_sorted_by_key(|record| record.stamp));
     }

@@ -18,15 +18,17 @@ use std::process::ExitCode;
 const HELP: &str = "\
 Usage: cargo xtask TASK [OPTIONS]
 
-  regress [SUITE…]   run the systems on stored logs, compare figures with bounds, write the report
-                     [--data DIR] [--out DIR] [--seed N] [--quick] [--bless] [--threads N]
+  regress [SUITE|RUN…]   run the systems on stored logs, compare figures with bounds, write the report after every run
+                     [--data DIR] [--out DIR] [--seed N] [--quick] [--all] [--resume] [--bless] [--threads N]
+                     a suite, a run or --all runs the experiments too
                      DIR of --data defaults to $WAYFIX_DATA, of --out to target/regress
   fixtures           rebuild every stored log from its seed; --check compares and writes nothing
   ci                 what CI runs, cheap steps first; --from STEP resumes
   tidy               check the invariants of docs/architecture.md that a machine can check; --write redraws its picture
   spelling           look for misspelled words
   docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it;
-                     --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress
+                     --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress;
+                     --papers [REPORT] writes docs/papers.md anew, with the measured figures of a report
   tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns

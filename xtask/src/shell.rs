@@ -27,19 +27,37 @@ pub(crate) fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
     command
 }
 
-/// The command line, built for speed; arguments follow.
+/// The command line; arguments follow.
 pub(crate) fn wayfix(args: &[&str]) -> Command {
     program("wayfix", args)
 }
 
-/// The experiments, built for speed; arguments follow.
+/// The experiments; arguments follow.
 pub(crate) fn experiments(args: &[&str]) -> Command {
     program("wayfix-experiments", args)
 }
 
-fn program(package: &str, args: &[&str]) -> Command {
-    let mut command = command("cargo", &["run", "--quiet", "--release", "--package", package, "--"]);
-    command.args(args);
+/// The profile is that of the tests, which optimizes too: a release build takes longer than what it saves here.
+fn program(name: &str, args: &[&str]) -> Command {
+    let mut command = cargo("run", name);
+    command.arg("--").args(args);
+    command
+}
+
+/// The command that builds `wayfix` or `wayfix-experiments`.
+pub(crate) fn build(program: &str) -> Command {
+    cargo("build", program)
+}
+
+/// Environment variable with features for [`program`] and [`build`]: those of the tests, so that CI compiles each crate once.
+pub(crate) const FEATURES: &str = "XTASK_FEATURES";
+
+/// `--bin` without a package: the features of dependencies are those of the whole workspace then, as in the tests.
+fn cargo(verb: &str, program: &str) -> Command {
+    let mut command = command("cargo", &[verb, "--quiet", "--locked", "--bin", program]);
+    if let Ok(features) = std::env::var(FEATURES) {
+        command.args(["--features", &features]);
+    }
     command
 }
 

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use crate::shell;
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
-    shell::check(&mut shell::command("cargo", &["build", "--release", "--locked", "-p", "wayfix"]))?;
+    shell::check(&mut shell::build("wayfix"))?;
     let mut n_run = 0;
     for entry in fs::read_dir(shell::root().join("docs/tutorials"))? {
         let page = entry?.path();
@@ -37,7 +37,7 @@ fn follow(page: &Path, name: &str) -> Result<()> {
     let mut link = shell::command("ln", &["-s"]);
     shell::check(link.arg(root.join("fixtures")).arg(root.join("params")).arg(&folder))?;
 
-    let programs = shell::target_dir().join("release").into_os_string();
+    let programs = shell::target_dir().join("debug").into_os_string();
     let path = std::env::join_paths(
         std::iter::once(programs.into())
             .chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),

@@ -11,11 +11,11 @@ use std::hint::black_box;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceIndex, Descriptor, LinearSearch, Panorama, PanoramaDescriptor, PanoramaFeatures,
-    PanoramaParams, ReferenceId, ReferenceSearch,
+    AppearanceIndex, LinearSearch, Panorama, PanoramaDescriptor, PanoramaDescriptorExtractor,
+    PanoramaDescriptorParams, ReferenceId, ReferenceSearch, ViewDescriptor,
 };
 use wayfix_scene_sim::{
-    indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot},
+    indoors::{IndoorDrive, IndoorDriveParams, RetailStore, RetailStoreParams, calibrated_robot},
     random::RandomStreams,
 };
 
@@ -30,8 +30,8 @@ const WIDE: f64 = 0.87;
 
 fn main() {
     let (learned, seen) = drives();
-    let features =
-        PanoramaFeatures::new(PanoramaParams::default(), 120, 20).expect("the simulator's panoramas");
+    let features = PanoramaDescriptorExtractor::new(PanoramaDescriptorParams::default(), 120, 20)
+        .expect("the simulator's panoramas");
     let describe = |panorama: &Panorama| features.describe(panorama).expect("a view that shows something");
     let seconds = best_of(200, || describe(&seen[0]));
     report("describe 120 x 20", seconds);
@@ -64,7 +64,7 @@ fn main() {
         };
         let (bounded, compared) = (share(|cost| cost.bounded), share(|cost| cost.compared));
         eprintln!(
-            "{size}: sketches leave {bounded:.2} %, bounds {compared:.3} %, found {:.3} %",
+            "{size}: rough bounds leave {bounded:.2} %, bounds {compared:.3} %, found {:.3} %",
             share(|cost| cost.found)
         );
         if size <= 10_000 {
@@ -87,8 +87,11 @@ fn drives() -> (Vec<Panorama>, Vec<Panorama>) {
     let building = RetailStore::draw(shape, &mut rng).expect("a store").building();
     let mut drive = |metres: f64| -> Vec<Panorama> {
         let route = building.aisles().tour(metres, &mut rng).expect("aisles");
-        let params =
-            IndoorParams { drive: calibrated_robot(&mut rng), n_people: 20, ..IndoorParams::default() };
+        let params = IndoorDriveParams {
+            robot: calibrated_robot(&mut rng),
+            n_people: 20,
+            ..IndoorDriveParams::default()
+        };
         let steps =
             IndoorDrive::new(&building, route, params, RandomStreams::new(rng.clone())).expect("a route");
         let size = |view: &Panorama| assert_eq!((view.n_columns(), view.n_rows()), (120, 20));

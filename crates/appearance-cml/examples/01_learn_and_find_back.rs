@@ -4,8 +4,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, AppearanceMapError, LocalizerParams, Panorama, PanoramaDescriptor, PanoramaFeatures,
-    PanoramaParams, Start,
+    AppearanceLocalizer, AppearanceMapError, LocalizerParams, Panorama, PanoramaDescriptor,
+    PanoramaDescriptorExtractor, PanoramaDescriptorParams, StartPosePrior,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
@@ -15,13 +15,13 @@ const ROWS: usize = 20;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 1. What is compared of two views; one object for each size of panorama.
-    let features = PanoramaFeatures::new(PanoramaParams::default(), COLUMNS, ROWS)?;
+    let features = PanoramaDescriptorExtractor::new(PanoramaDescriptorParams::default(), COLUMNS, ROWS)?;
 
     // 2. The first day the robot knows where it starts, and nothing else.
     let start = Pose2::new(1.5, 1.5, 0.0);
     let known = Gaussian::from_sigmas(start, &Vector3::new(0.02, 0.02, 0.01))?;
     let mut localizer: AppearanceLocalizer<PanoramaDescriptor> =
-        AppearanceLocalizer::new(LocalizerParams::default(), Start::Known(known))?;
+        AppearanceLocalizer::new(LocalizerParams::default(), StartPosePrior::Known(known))?;
 
     // 3. At every step a view, and then the way to the next as the wheels tell it, 1 % too long.
     let mut robot = start;
@@ -39,7 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // 5. Another day, somewhere on the lap.
     let mut robot = lap().take(70).fold(start, |pose, step| pose.compose(&step));
-    let mut localizer = AppearanceLocalizer::with_map(LocalizerParams::default(), map, Start::Anywhere)?;
+    let mut localizer =
+        AppearanceLocalizer::with_map(LocalizerParams::default(), map, StartPosePrior::Anywhere)?;
     for step in lap().skip(70) {
         localizer.update(features.describe(&look(&robot)?)?)?;
         robot = robot.compose(&step);

@@ -5,7 +5,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use wayfix_appearance_cml::{AppearanceLocalizer, Descriptor, LocalizerParams, Start, ViewDifference};
+use wayfix_appearance_cml::{
+    AppearanceLocalizer, LocalizerParams, StartPosePrior, ViewDescriptor, ViewDifference,
+};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
@@ -15,7 +17,7 @@ const BEAMS: usize = 72;
 #[derive(Clone, Debug)]
 struct Ring([f64; BEAMS]);
 
-impl Descriptor for Ring {
+impl ViewDescriptor for Ring {
     /// Root mean square difference at the best rotation by whole beams: who has turned left by `n` beams sees the old beam `n` first.
     fn compare(&self, reference: &Self) -> ViewDifference {
         let squared = |turn: usize| -> f64 {
@@ -32,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Pose2::new(2.0, 1.5, 0.0);
     let known = Gaussian::from_sigmas(start, &Vector3::new(0.02, 0.02, 0.01))?;
     let mut localizer: AppearanceLocalizer<Ring> =
-        AppearanceLocalizer::new(LocalizerParams::default(), Start::Known(known))?;
+        AppearanceLocalizer::new(LocalizerParams::default(), StartPosePrior::Known(known))?;
 
     // Three laps of a circle; wheels that turn the robot by 2 % more than it turns.
     let (mut robot, mut by_wheels) = (start, start);

@@ -4,7 +4,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, AppearanceMap, Descriptor, LinearSearch, LocalizerParams, Start, ViewDifference,
+    AppearanceLocalizer, AppearanceMap, LinearSearch, LocalizerParams, StartPosePrior, ViewDescriptor,
+    ViewDifference,
 };
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_gaussian_core::Gaussian;
@@ -35,7 +36,7 @@ impl MotionModel for SlippingTracks {
 #[derive(Clone, Debug)]
 struct Brightness(f64);
 
-impl Descriptor for Brightness {
+impl ViewDescriptor for Brightness {
     fn compare(&self, reference: &Self) -> ViewDifference {
         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
     }
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         AppearanceLocalizer::with_motion_model(
             LocalizerParams::default(),
             AppearanceMap::default(),
-            Start::Known(start),
+            StartPosePrior::Known(start),
             SlippingTracks { slip: 0.1 },
         )?;
     for step in 0..40 {

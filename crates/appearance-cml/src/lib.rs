@@ -14,30 +14,33 @@ mod state;
 mod views;
 
 pub use archive::{
-    ArchivedViewFormat, MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal,
+    ArchivedDescriptorFormat, MapAndState, MapArchive, MapArchiveAppender, MapArchiveCompleteness,
+    MapArchiveError,
 };
 pub use error::AppearanceMapError;
 pub use fusion::{
-    FusionParams, GaussianFusionRule, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesisSource,
-    PositionFix, UniformComponent, combine, fuse,
+    GaussianFusionRule, GaussianMixtureLikelihood, MixtureFusionParams, MixtureWeighting,
+    PoseHypothesisSource, PositionFix, UniformComponent, combine, fuse,
 };
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, PoseHypothesisRule, Recovery, Start, UpdateOutcome,
+    AppearanceLocalizer, KidnappingTest, LocalizerEvent, LocalizerParams, MapLearning, PoseHypothesisRule,
+    StartPosePrior, ViewUpdateOutcome,
 };
 pub use model::{
     AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, MapUpdate, PlaceComponent,
-    PlaceMatch, PlaceUpdateRule, ReferenceView, ViewDifferenceSample, ViewDistanceScale, interpolate,
+    PlaceMatch, PlaceUpdateRule, ReferenceView, ViewDifferenceModel, ViewDifferenceSample, interpolate,
     similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance, NoBoundTable, ReferenceId,
-    ReferenceMatch, ReferenceSearch, SearchStatistics, ViewDifference,
+    AppearanceIndex, LinearSearch, LowerBoundTable, LowerBoundedDistance, NoLowerBoundTable, ReferenceId,
+    ReferenceMatch, ReferenceSearch, SearchStatistics, ViewDescriptor, ViewDifference,
 };
 pub use state::{
     MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared, simplify, unimodal,
 };
 pub use views::{
     AzimuthDirection, BrightnessNormalization, IntensityScale, OmnidirectionalRing, Panorama,
-    PanoramaBoundTable, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaQuery, RingOrientation,
+    PanoramaDescriptor, PanoramaDescriptorExtractor, PanoramaDescriptorParams, PanoramaLowerBoundTable,
+    PanoramaQuery, RingVerticalOrientation,
 };
 pub use wayfix_integrity::RelocalizationParams;

@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceMap, ArchivedViewFormat, IntensityScale, MapArchive, MapArchiveEnd,
-    MapArchiveError, MapArchiveJournal, PanoramaDescriptor, PanoramaParams, ReferenceSearch,
+    AppearanceIndex, AppearanceMap, ArchivedDescriptorFormat, IntensityScale, MapArchive, MapArchiveAppender,
+    MapArchiveCompleteness, MapArchiveError, PanoramaDescriptor, PanoramaDescriptorParams, ReferenceSearch,
     ViewDifferenceSample,
 };
 use wayfix_estimation_traits::Pose2;
@@ -13,8 +13,8 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 type Map = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
 type Parts = (Map, Option<GaussianMixture<Pose2<f64>>>);
 
-fn params() -> ArchivedViewFormat {
-    ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 3) }
+fn params() -> ArchivedDescriptorFormat {
+    ArchivedDescriptorFormat { views: PanoramaDescriptorParams::default(), size: (120, 3) }
 }
 
 fn pose(step: usize) -> Gaussian<Pose2<f64>> {
@@ -63,7 +63,10 @@ fn bytes() -> Vec<u8> {
 #[test]
 fn what_was_saved_comes_back() {
     let archive = MapArchive::from_bytes(&bytes()).unwrap();
-    assert_eq!((archive.end(), archive.len(), archive.params()), (MapArchiveEnd::Whole, 6, &params()));
+    assert_eq!(
+        (archive.end(), archive.len(), archive.params()),
+        (MapArchiveCompleteness::Whole, 6, &params())
+    );
     assert_same(&archive.into_map(&params()).unwrap(), &map(), Some(&state()));
 }
 
@@ -71,7 +74,7 @@ fn what_was_saved_comes_back() {
 fn a_journal_brings_the_map_up_to_date() {
     let mut map = map();
     let mut bytes = MapArchive::to_bytes(&params(), &map, None);
-    let mut journal = MapArchiveJournal::after(&map);
+    let mut journal = MapArchiveAppender::after(&map);
     let before = bytes.len();
     learn(&mut map, 6..9);
     bytes.extend(journal.changes(&map, Some(&state())));
@@ -91,9 +94,9 @@ fn a_cut_anywhere_in_an_entry_leaves_what_is_before_it() {
     for length in 0..whole.len() {
         match MapArchive::from_bytes(&whole[..length]) {
             Ok(archive) => {
-                if let MapArchiveEnd::Interrupted { whole_bytes } = archive.end() {
+                if let MapArchiveCompleteness::Interrupted { whole_bytes } = archive.end() {
                     let again = MapArchive::from_bytes(&whole[..whole_bytes]).unwrap();
-                    assert_eq!((again.end(), again.len()), (MapArchiveEnd::Whole, archive.len()));
+                    assert_eq!((again.end(), again.len()), (MapArchiveCompleteness::Whole, archive.len()));
                 }
                 let n = archive.len();
                 let parts: Parts = archive.into_map(&params()).unwrap();
@@ -114,7 +117,7 @@ fn zeros_at_the_end_are_what_was_not_written() {
     let whole = bytes();
     let longer = [&whole[..], &[0; 100]].concat();
     let archive = MapArchive::from_bytes(&longer).unwrap();
-    assert_eq!(archive.end(), MapArchiveEnd::Interrupted { whole_bytes: whole.len() });
+    assert_eq!(archive.end(), MapArchiveCompleteness::Interrupted { whole_bytes: whole.len() });
     assert_eq!(archive.len(), 6);
 }
 
@@ -133,7 +136,9 @@ fn every_flipped_bit_is_found() {
                 ),
             },
             // The length of the last entry, made larger, is an entry cut short: nothing can follow it.
-            Ok(archive) => assert!(matches!(archive.end(), MapArchiveEnd::Interrupted { .. }), "bit {bit}"),
+            Ok(archive) => {
+                assert!(matches!(archive.end(), MapArchiveCompleteness::Interrupted { .. }), "bit {bit}");
+            }
         }
     }
 }
@@ -145,20 +150,26 @@ fn another_version_and_other_parameters_are_named() {
     assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), MapArchiveError::Version { found: 9, known: 3 });
     let good = params();
     for (params, named) in [
-        (ArchivedViewFormat { size: (240, 3), ..good }, "size of the panorama"),
+        (ArchivedDescriptorFormat { size: (240, 3), ..good }, "size of the panorama"),
         (
-            ArchivedViewFormat {
-                views: PanoramaParams { intensity_scale: IntensityScale::Linear, ..good.views },
+            ArchivedDescriptorFormat {
+                views: PanoramaDescriptorParams { intensity_scale: IntensityScale::Linear, ..good.views },
                 ..good
             },
             "intensity_scale",
         ),
         (
-            ArchivedViewFormat { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good },
+            ArchivedDescriptorFormat {
+                views: PanoramaDescriptorParams { n_harmonics: 8, ..good.views },
+                ..good
+            },
             "n_harmonics",
         ),
         (
-            ArchivedViewFormat { views: PanoramaParams { smoothing_sigma: 0.0, ..good.views }, ..good },
+            ArchivedDescriptorFormat {
+                views: PanoramaDescriptorParams { smoothing_sigma: 0.0, ..good.views },
+                ..good
+            },
             "smoothing_sigma",
         ),
     ] {

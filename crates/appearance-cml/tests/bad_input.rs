@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
     AppearanceLocalizer, AppearanceMapError, LocalizerParams, PoseHypothesis, PoseHypothesisSource,
-    PositionFix, Start,
+    PositionFix, StartPosePrior,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
@@ -41,7 +41,7 @@ impl PoseHypothesisSource for Singular {
 fn half_a_lap(rng: &mut ChaCha8Rng) -> (Field, Localizer) {
     let field = Field::new(rng);
     let way = lap(14.0, 8.0, 160);
-    let start = Start::Known(known(way[0]));
+    let start = StartPosePrior::Known(known(way[0]));
     let mut localizer = Localizer::new(LocalizerParams::default(), start).expect("valid defaults");
     for pair in way[..80].windows(2) {
         localizer.update(field.view(&pair[0], rng)).expect("a good view");
@@ -84,7 +84,8 @@ fn sources_that_fail_change_nothing() {
 fn a_fix_helps_where_nothing_is_known() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let field = Field::new(&mut rng);
-    let mut localizer = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
+    let mut localizer =
+        Localizer::new(LocalizerParams::default(), StartPosePrior::Anywhere).expect("valid defaults");
     let pose = Pose2::new(3.0, 4.0, 0.0);
     let nothing = localizer.update(field.view(&pose, &mut rng)).expect("a good view");
     assert_eq!((nothing.estimate, nothing.n_detections), (None, 0), "no references, no idea");
@@ -98,11 +99,11 @@ fn a_fix_helps_where_nothing_is_known() {
 #[test]
 fn invalid_start_or_parameters_are_refused() {
     let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
-    assert!(Localizer::new(LocalizerParams::default(), Start::Known(flat)).is_err());
+    assert!(Localizer::new(LocalizerParams::default(), StartPosePrior::Known(flat)).is_err());
     let mut params = LocalizerParams::default();
     params.map.weight_learning_rate = f64::NAN;
     assert!(matches!(
-        Localizer::new(params, Start::Anywhere),
+        Localizer::new(params, StartPosePrior::Anywhere),
         Err(AppearanceMapError::Parameter { what: "learning rate", .. })
     ));
 }

@@ -5,12 +5,14 @@ mod common;
 use common::{Field, FieldView, between, drifting, known, lap};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMap, Event, Learning, LocalizerParams, Start};
+use wayfix_appearance_cml::{
+    AppearanceLocalizer, AppearanceMap, LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior,
+};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
-const STATIC: Learning = Learning::Static;
+const STATIC: MapLearning = MapLearning::Static;
 
 /// A way of 160 steps of about 0.26 m.
 fn way() -> Vec<Pose2<f64>> {
@@ -37,7 +39,8 @@ fn drive(
 }
 
 fn taught(field: &Field, rng: &mut ChaCha8Rng) -> AppearanceMap<FieldView> {
-    let mut localizer = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
+    let mut localizer =
+        Localizer::new(LocalizerParams::default(), StartPosePrior::Anywhere).expect("valid defaults");
     for pose in way() {
         localizer.teach(field.view(&pose, rng), &known(pose)).expect("a good view");
     }
@@ -53,7 +56,7 @@ fn map_built_on_the_first_lap_ends_the_drift() {
     for seed in 0..3 {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let field = Field::new(&mut rng);
-        let start = Start::Known(known(way()[0]));
+        let start = StartPosePrior::Known(known(way()[0]));
         let mut localizer = Localizer::new(LocalizerParams::default(), start).expect("valid defaults");
         let errors = drive(&mut localizer, &field, (0, 640), &mut rng);
         let mut dead_reckoning = way()[0];
@@ -76,10 +79,11 @@ fn a_taught_map_localizes_within_a_step() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let field = Field::new(&mut rng);
         let map = taught(&field, &mut rng);
-        for learning in [STATIC, Learning::Adapting] {
-            let params = LocalizerParams { learning, ..LocalizerParams::default() };
-            let mut localizer = Localizer::with_map(params, map.clone(), Start::Known(known(way()[0])))
-                .expect("valid defaults");
+        for learning in [STATIC, MapLearning::Adapting] {
+            let params = LocalizerParams { map_learning: learning, ..LocalizerParams::default() };
+            let mut localizer =
+                Localizer::with_map(params, map.clone(), StartPosePrior::Known(known(way()[0])))
+                    .expect("valid defaults");
             let errors = drive(&mut localizer, &field, (0, 480), &mut rng);
             // References lie 0.26 m apart, and interpolating between them is to be better than taking the nearest.
             assert!(mean(&errors) < 0.13, "seed {seed}, {learning:?}: {} m", mean(&errors));
@@ -95,8 +99,9 @@ fn robot_is_found_from_an_unknown_start_and_after_kidnapping() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let field = Field::new(&mut rng);
         let map = taught(&field, &mut rng);
-        let params = LocalizerParams { learning: STATIC, ..LocalizerParams::default() };
-        let mut localizer = Localizer::with_map(params, map, Start::Anywhere).expect("valid defaults");
+        let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
+        let mut localizer =
+            Localizer::with_map(params, map, StartPosePrior::Anywhere).expect("valid defaults");
         let begin = 16 * seed as usize;
         // 20 m are 77 steps.
         found += u32::from(drive(&mut localizer, &field, (begin, 77), &mut rng)[76] < 1.0);
@@ -114,14 +119,18 @@ fn person_who_passes_by_makes_no_reference() {
         let map = taught(&field, &mut rng);
         let params = LocalizerParams { skip_outlier_views_in_mapping, ..LocalizerParams::default() };
         let mut localizer =
-            Localizer::with_map(params, map, Start::Known(known(way()[0]))).expect("valid defaults");
+            Localizer::with_map(params, map, StartPosePrior::Known(known(way()[0]))).expect("valid defaults");
         let mut made = Vec::new();
         for k in 0..160 {
             let (pose, next) = (way()[k], way()[(k + 1) % 160]);
             let view = if k % 8 == 4 { field.occluded(&mut rng) } else { field.view(&pose, &mut rng) };
             let outcome = localizer.update(view).expect("a good view");
             made.extend(
-                outcome.events.iter().filter(|event| matches!(event, Event::NewReference(_))).copied(),
+                outcome
+                    .events
+                    .iter()
+                    .filter(|event| matches!(event, LocalizerEvent::NewReference(_)))
+                    .copied(),
             );
             localizer.predict(&drifting(&between(&pose, &next), &mut rng)).expect("finite odometry");
         }
@@ -137,9 +146,9 @@ fn turning_on_the_spot_is_corrected_by_views() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let field = Field::new(&mut rng);
     let map = taught(&field, &mut rng);
-    let params = LocalizerParams { learning: STATIC, ..LocalizerParams::default() };
+    let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
     let mut localizer =
-        Localizer::with_map(params, map, Start::Known(known(way()[0]))).expect("valid defaults");
+        Localizer::with_map(params, map, StartPosePrior::Known(known(way()[0]))).expect("valid defaults");
     drive(&mut localizer, &field, (0, 20), &mut rng);
     let mut pose = way()[20];
     let mut largest: f64 = 0.0;

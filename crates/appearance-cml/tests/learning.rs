@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceMap, AppearanceMapParams, Descriptor, ForgettingMode, ForgettingUncertainty, PlaceUpdateRule,
-    ViewDifference, ViewDifferenceSample, similarity,
+    AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, PlaceUpdateRule,
+    ViewDescriptor, ViewDifference, ViewDifferenceSample, similarity,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -12,7 +12,7 @@ use wayfix_gaussian_core::Gaussian;
 #[derive(Clone, Debug)]
 struct Tone(f64);
 
-impl Descriptor for Tone {
+impl ViewDescriptor for Tone {
     fn compare(&self, reference: &Self) -> ViewDifference {
         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
     }
@@ -31,7 +31,7 @@ const GATE: f64 = 7.8;
 fn published() -> AppearanceMapParams {
     // A quarter of the way from a nugget of 0 to the sill at twice the difference of successive views, both in squares: E^max = 1.
     AppearanceMapParams {
-        match_limit_fraction: 0.25,
+        max_match_difference_share: 0.25,
         weight_learning_rate: 0.5,
         min_weight: 0.01,
         forgetting_rate: 0.4,

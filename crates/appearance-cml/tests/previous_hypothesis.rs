@@ -5,7 +5,9 @@ mod common;
 use common::{Field, FieldView, beside, between, drifting, known};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_appearance_cml::{AppearanceLocalizer, Event, LocalizerParams, RelocalizationParams, Start};
+use wayfix_appearance_cml::{
+    AppearanceLocalizer, LocalizerEvent, LocalizerParams, RelocalizationParams, StartPosePrior,
+};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
 const N_SEEDS: u64 = 10;
@@ -42,7 +44,7 @@ fn drive(seed: u64, kept_distance: f64) -> Drive {
         ..LocalizerParams::default()
     };
     let mut localizer =
-        AppearanceLocalizer::<FieldView>::new(params, Start::Known(known(far(0)))).expect("valid");
+        AppearanceLocalizer::<FieldView>::new(params, StartPosePrior::Known(known(far(0)))).expect("valid");
     for step in 0..=ALIKE {
         localizer
             .teach(aisle.view(&beside(step, 0.0), &mut rng), &known(beside(step, 0.0)))
@@ -63,7 +65,7 @@ fn drive(seed: u64, kept_distance: f64) -> Drive {
         let outcome = localizer.update(view).expect("a good view");
         let is_away = localizer.estimate().is_some_and(|estimate| estimate.mean().x() < 50.0);
         drive.was_elsewhere |= is_away;
-        let made = outcome.events.iter().filter(|event| matches!(event, Event::NewReference(_)));
+        let made = outcome.events.iter().filter(|event| matches!(event, LocalizerEvent::NewReference(_)));
         drive.n_learned_astray += if is_away { made.count() } else { 0 };
         localizer.predict(&drifting(&between(&far(step), &far(step + 1)), &mut rng)).expect("finite");
     }

@@ -6,7 +6,9 @@ use std::ops::Range;
 
 use common::{Field, FieldView, N_STEPS, beside, between, drifting, known};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMap, Learning, LocalizerParams, Start};
+use wayfix_appearance_cml::{
+    AppearanceLocalizer, AppearanceMap, LocalizerParams, MapLearning, StartPosePrior,
+};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
@@ -36,20 +38,21 @@ fn lap(localizer: &mut Localizer, fields: [&Field; 2], rng: &mut ChaCha8Rng) -> 
 fn second_lap(seed: u64) -> [f64; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (before, after) = (Field::new(&mut rng), Field::new(&mut rng));
-    let mut teacher = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
+    let mut teacher =
+        Localizer::new(LocalizerParams::default(), StartPosePrior::Anywhere).expect("valid defaults");
     for k in 0..N_STEPS {
         teacher.teach(before.view(&beside(k, 0.0), &mut rng), &known(beside(k, 0.0))).expect("a good view");
     }
     let mut drive = |map: AppearanceMap<FieldView>, learning| {
-        let params = LocalizerParams { learning, ..LocalizerParams::default() };
-        let start = Start::Known(known(beside(0, 0.0)));
+        let params = LocalizerParams { map_learning: learning, ..LocalizerParams::default() };
+        let start = StartPosePrior::Known(known(beside(0, 0.0)));
         let mut localizer = Localizer::with_map(params, map, start).expect("valid parameters");
         let error = lap(&mut localizer, [&before, &after], &mut rng);
         (localizer.into_map(), error)
     };
     let taught = teacher.into_map();
-    let (adapted, _) = drive(taught.clone(), Learning::Adapting);
-    [drive(taught, Learning::Static).1, drive(adapted, Learning::Static).1]
+    let (adapted, _) = drive(taught.clone(), MapLearning::Adapting);
+    [drive(taught, MapLearning::Static).1, drive(adapted, MapLearning::Static).1]
 }
 
 #[test]

@@ -7,7 +7,8 @@ use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Recovery, Start, UpdateOutcome,
+    AppearanceLocalizer, KidnappingTest, LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior,
+    ViewUpdateOutcome,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
@@ -20,14 +21,15 @@ const BESIDE: f64 = 0.3;
 const TRAVEL: usize = 77;
 
 /// A localizer with a known start in a static map of the lane.
-fn at_start(field: &Field, recovery: Recovery, rng: &mut ChaCha8Rng) -> Localizer {
-    let params = LocalizerParams { learning: Learning::Static, recovery, ..LocalizerParams::default() };
-    let mut teacher = Localizer::new(params, Start::Anywhere).expect("valid defaults");
+fn at_start(field: &Field, kidnapping_test: KidnappingTest, rng: &mut ChaCha8Rng) -> Localizer {
+    let params =
+        LocalizerParams { map_learning: MapLearning::Static, kidnapping_test, ..LocalizerParams::default() };
+    let mut teacher = Localizer::new(params, StartPosePrior::Anywhere).expect("valid defaults");
     for step in 0..N_STEPS {
         let pose = beside(step, 0.0);
         teacher.teach(field.view(&pose, rng), &known(pose)).expect("a good view");
     }
-    Localizer::with_map(params, teacher.into_map(), Start::Known(known(beside(0, 0.0))))
+    Localizer::with_map(params, teacher.into_map(), StartPosePrior::Known(known(beside(0, 0.0))))
         .expect("valid defaults")
 }
 
@@ -37,7 +39,7 @@ fn take_step(
     field: &Field,
     (step, offset): (usize, f64),
     rng: &mut ChaCha8Rng,
-) -> UpdateOutcome {
+) -> ViewUpdateOutcome {
     let (pose, next) = (beside(step, offset), beside(step + 1, offset));
     let outcome = localizer.update(field.view(&pose, rng)).expect("a good view");
     localizer.predict(&drifting(&between(&pose, &next), rng)).expect("finite odometry");
@@ -49,11 +51,11 @@ fn error(localizer: &Localizer, at: Vector2<f64>) -> f64 {
 }
 
 /// Number of robots within 1 m after a kidnapping by half a lap and 20 m [`BESIDE`] the lane.
-fn found_after_kidnapping(recovery: Recovery) -> usize {
+fn found_after_kidnapping(kidnapping_test: KidnappingTest) -> usize {
     let is_found = |seed: &u64| {
         let mut rng = ChaCha8Rng::seed_from_u64(*seed);
         let field = Field::new(&mut rng);
-        let mut localizer = at_start(&field, recovery, &mut rng);
+        let mut localizer = at_start(&field, kidnapping_test, &mut rng);
         for step in 0..TRAVEL {
             take_step(&mut localizer, &field, (step, 0.0), &mut rng);
         }
@@ -68,8 +70,8 @@ fn found_after_kidnapping(recovery: Recovery) -> usize {
 
 #[test]
 fn kidnapped_robot_beside_the_lane_is_found_by_the_test() {
-    let with = found_after_kidnapping(Recovery::SequentialTest);
-    let without = found_after_kidnapping(Recovery::Off);
+    let with = found_after_kidnapping(KidnappingTest::SequentialTest);
+    let without = found_after_kidnapping(KidnappingTest::Off);
     // The target is 85 of 100: fewer than seven of ten happen by chance in one run of twenty.
     assert!(with >= 7 && without < with, "{with} found with the test, {without} without, of {N_SEEDS}");
 }
@@ -78,12 +80,12 @@ fn kidnapped_robot_beside_the_lane_is_found_by_the_test() {
 fn largest_error(seed: u64, seen: impl Fn(usize, &[Field; 2], &mut ChaCha8Rng) -> FieldView) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let fields = [Field::new(&mut rng), Field::new(&mut rng)];
-    let mut localizer = at_start(&fields[0], Recovery::default(), &mut rng);
+    let mut localizer = at_start(&fields[0], KidnappingTest::default(), &mut rng);
     let mut largest: f64 = 0.0;
     for step in 0..2 * N_STEPS {
         let view = seen(step, &fields, &mut rng);
         let outcome = localizer.update(view).expect("a good view");
-        assert!(!outcome.events.contains(&Event::Relocated), "seed {seed}, step {step}");
+        assert!(!outcome.events.contains(&LocalizerEvent::Relocated), "seed {seed}, step {step}");
         let moved = between(&beside(step, 0.0), &beside(step + 1, 0.0));
         localizer.predict(&drifting(&moved, &mut rng)).expect("finite odometry");
         largest = largest.max(error(&localizer, beside(step + 1, 0.0).translation));
@@ -109,9 +111,9 @@ fn rearranged_aisle_does_not_relocalize_the_robot() {
 fn steps_until_relocated(seed: u64) -> Option<usize> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (known_ground, new_ground) = (Field::new(&mut rng), Field::new(&mut rng));
-    let taught = at_start(&known_ground, Recovery::default(), &mut rng);
+    let taught = at_start(&known_ground, KidnappingTest::default(), &mut rng);
     let far = |step: usize| Pose2::new(100.0, 0.0, 0.0).compose(&beside(step, 0.0));
-    let start = Start::Known(known(far(0)));
+    let start = StartPosePrior::Known(known(far(0)));
     let mut localizer = Localizer::with_map(*taught.params(), taught.into_map(), start).expect("valid");
     for step in 0..31 + TRAVEL {
         let view = match step {
@@ -120,7 +122,7 @@ fn steps_until_relocated(seed: u64) -> Option<usize> {
             _ => known_ground.view(&beside(step, BESIDE), &mut rng),
         };
         let outcome = localizer.update(view).expect("a good view");
-        if outcome.events.contains(&Event::Relocated) {
+        if outcome.events.contains(&LocalizerEvent::Relocated) {
             return Some(step - 30);
         }
         localizer.predict(&drifting(&between(&far(step), &far(step + 1)), &mut rng)).expect("finite");

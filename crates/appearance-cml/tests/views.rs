@@ -4,8 +4,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceMapError, AzimuthDirection, Descriptor, Panorama, PanoramaDescriptor, PanoramaFeatures,
-    PanoramaParams,
+    AppearanceMapError, AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaDescriptorExtractor,
+    PanoramaDescriptorParams, ViewDescriptor,
 };
 
 const COLUMNS: usize = 120;
@@ -20,8 +20,8 @@ fn scene(rng: &mut ChaCha8Rng) -> Panorama {
     Panorama::from_rgb(COLUMNS, ROWS, bytes).unwrap()
 }
 
-fn features(params: PanoramaParams) -> PanoramaFeatures {
-    PanoramaFeatures::new(params, COLUMNS, ROWS).unwrap()
+fn features(params: PanoramaDescriptorParams) -> PanoramaDescriptorExtractor {
+    PanoramaDescriptorExtractor::new(params, COLUMNS, ROWS).unwrap()
 }
 
 fn scenes(n: usize) -> Vec<Panorama> {
@@ -31,7 +31,7 @@ fn scenes(n: usize) -> Vec<Panorama> {
 
 #[test]
 fn view_distance_is_zero_to_itself_and_symmetric() {
-    let features = features(PanoramaParams::default());
+    let features = features(PanoramaDescriptorParams::default());
     let views: Vec<PanoramaDescriptor> =
         scenes(30).iter().map(|scene| features.describe(scene).unwrap()).collect();
     for (index, a) in views.iter().enumerate() {
@@ -47,7 +47,10 @@ fn view_distance_is_zero_to_itself_and_symmetric() {
 #[test]
 fn smoothing_brings_views_nearer_and_nothing_further() {
     let distances = |smoothing| {
-        let features = features(PanoramaParams { smoothing_sigma: smoothing, ..PanoramaParams::default() });
+        let features = features(PanoramaDescriptorParams {
+            smoothing_sigma: smoothing,
+            ..PanoramaDescriptorParams::default()
+        });
         let views: Vec<PanoramaDescriptor> =
             scenes(8).iter().map(|scene| features.describe(scene).unwrap()).collect();
         views[1..].iter().map(|view| views[0].compare(view).distance).collect::<Vec<f64>>()
@@ -60,7 +63,7 @@ fn smoothing_brings_views_nearer_and_nothing_further() {
 
 #[test]
 fn the_triangle_inequality_holds() {
-    let features = features(PanoramaParams::default());
+    let features = features(PanoramaDescriptorParams::default());
     let views: Vec<PanoramaDescriptor> =
         scenes(12).iter().map(|scene| features.describe(scene).unwrap()).collect();
     let distance = |a: usize, b: usize| views[a].compare(&views[b]).distance;
@@ -72,7 +75,10 @@ fn the_triangle_inequality_holds() {
 #[test]
 fn rotated_view_gives_the_turn_and_the_same_distance() {
     for (sense, sign) in [(AzimuthDirection::Clockwise, -1.0), (AzimuthDirection::Counterclockwise, 1.0)] {
-        let features = features(PanoramaParams { azimuth_direction: sense, ..PanoramaParams::default() });
+        let features = features(PanoramaDescriptorParams {
+            azimuth_direction: sense,
+            ..PanoramaDescriptorParams::default()
+        });
         let views = scenes(2);
         let [here, there] = [0, 1].map(|index: usize| features.describe(&views[index]).unwrap());
         for n in 0..COLUMNS {
@@ -100,7 +106,7 @@ fn a_turn_by_less_than_a_column_is_measured() {
         };
         Panorama::from_rgb(480, 8, (0..480 * 8).flat_map(|i| [grey(i); 3]).collect()).unwrap()
     };
-    let features = PanoramaFeatures::new(PanoramaParams::default(), 480, 8).unwrap();
+    let features = PanoramaDescriptorExtractor::new(PanoramaDescriptorParams::default(), 480, 8).unwrap();
     let reference = features.describe(&fine(0)).unwrap();
     for shift in 1..8 {
         let seen = features.describe(&fine(shift)).unwrap().compare(&reference).rotation.to_degrees();
@@ -110,7 +116,7 @@ fn a_turn_by_less_than_a_column_is_measured() {
 
 #[test]
 fn brighter_light_changes_little() {
-    let features = features(PanoramaParams::default());
+    let features = features(PanoramaDescriptorParams::default());
     let scene = scenes(2);
     let lit = |gain: f64| {
         let bytes = scene[0].pixels().iter().flatten().map(|&value| (f64::from(value) * gain).round() as u8);
@@ -125,7 +131,7 @@ fn brighter_light_changes_little() {
 
 #[test]
 fn what_shows_nothing_is_refused() {
-    let features = features(PanoramaParams::default());
+    let features = features(PanoramaDescriptorParams::default());
     let of = |bytes: Vec<u8>| features.describe(&Panorama::from_rgb(COLUMNS, ROWS, bytes).unwrap());
     for grey in [3, 77, 240] {
         let blank = of(vec![grey; COLUMNS * ROWS * 3]);
@@ -145,23 +151,23 @@ fn what_shows_nothing_is_refused() {
 
 #[test]
 fn parameters_outside_their_range_are_named() {
-    let good = PanoramaParams::default();
+    let good = PanoramaDescriptorParams::default();
     for (params, named) in [
-        (PanoramaParams { n_rings: 0, ..good }, "n_rings"),
-        (PanoramaParams { n_rings: 65, ..good }, "n_rings"),
-        (PanoramaParams { n_sectors: 2, ..good }, "n_sectors"),
-        (PanoramaParams { n_harmonics: 1, ..good }, "n_harmonics"),
-        (PanoramaParams { n_harmonics: 61, ..good }, "n_harmonics"),
-        (PanoramaParams { smoothing_sigma: f64::NAN, ..good }, "smoothing_sigma"),
-        (PanoramaParams { smoothing_sigma: -1.0, ..good }, "smoothing_sigma"),
-        (PanoramaParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
-        (PanoramaParams { max_saturated_share: -0.1, ..good }, "max_saturated_share"),
+        (PanoramaDescriptorParams { n_rings: 0, ..good }, "n_rings"),
+        (PanoramaDescriptorParams { n_rings: 65, ..good }, "n_rings"),
+        (PanoramaDescriptorParams { n_sectors: 2, ..good }, "n_sectors"),
+        (PanoramaDescriptorParams { n_harmonics: 1, ..good }, "n_harmonics"),
+        (PanoramaDescriptorParams { n_harmonics: 61, ..good }, "n_harmonics"),
+        (PanoramaDescriptorParams { smoothing_sigma: f64::NAN, ..good }, "smoothing_sigma"),
+        (PanoramaDescriptorParams { smoothing_sigma: -1.0, ..good }, "smoothing_sigma"),
+        (PanoramaDescriptorParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
+        (PanoramaDescriptorParams { max_saturated_share: -0.1, ..good }, "max_saturated_share"),
     ] {
-        let refused = PanoramaFeatures::new(params, COLUMNS, ROWS).unwrap_err();
+        let refused = PanoramaDescriptorExtractor::new(params, COLUMNS, ROWS).unwrap_err();
         assert!(matches!(refused, AppearanceMapError::Parameter { what, .. } if what == named), "{refused}");
     }
     for (columns, rows) in [(0, 0), (COLUMNS, 0), (0, ROWS), (30, ROWS)] {
-        assert!(PanoramaFeatures::new(good, columns, rows).is_err(), "{columns} × {rows}");
+        assert!(PanoramaDescriptorExtractor::new(good, columns, rows).is_err(), "{columns} × {rows}");
     }
 }
 

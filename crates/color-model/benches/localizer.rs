@@ -11,9 +11,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
 use wayfix_color_model::{
-    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingFilterParams,
-    LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, Start, YuvImage,
-    gather,
+    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingFilter, LightingFilterBank, LightingFilterParams,
+    LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, StartPosePrior,
+    YuvImage, gather,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -66,7 +66,8 @@ fn main() {
     report("compile the table", 3, || ColorLookUpTable::new(light.clone(), None));
 
     let params = LocalizerParams::default();
-    let start = Start::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));
+    let start =
+        StartPosePrior::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut localizer =
         ColorLocalizer::new(Arc::clone(&map), camera, bank(), &start, params, &mut rng).expect("valid");
@@ -86,7 +87,7 @@ fn picture(map: &Arc<ColorMap>, camera: PinholeCamera, pose: &Pose3<f64>) -> Yuv
     YuvImage::new(labels.width(), labels.height(), pixels).expect("as many pixels as labels")
 }
 
-fn bank() -> LightingBank {
+fn bank() -> LightingFilterBank {
     let filter = |share: f64| {
         let mean = DVector::from_iterator(15, LIGHT.into_iter().flatten().map(|v| share * v));
         let covariance = DMatrix::from_fn(15, 15, |i, j| if i == j { 150.0 } else { 80.0 });
@@ -94,7 +95,7 @@ fn bank() -> LightingBank {
         LightingFilter::new(prior, LightingFilterParams::default()).expect("valid")
     };
     let chain = MarkovChain::sticky(2, 0.98).expect("a probability");
-    LightingBank::new(vec![filter(0.5), filter(1.0)], chain).expect("two of each")
+    LightingFilterBank::new(vec![filter(0.5), filter(1.0)], chain).expect("two of each")
 }
 
 /// Prints the best time of fifteen batches of `calls`.

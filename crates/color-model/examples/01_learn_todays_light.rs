@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingFilterParams};
+use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterBank, LightingFilterParams};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
 
@@ -18,8 +18,10 @@ fn kind_of_light(brightness: f64) -> Result<LightingFilter, Box<dyn std::error::
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 1. It may be dark or bright; lights are switched once in fifty images or so.
-    let mut bank =
-        LightingBank::new(vec![kind_of_light(70.0)?, kind_of_light(150.0)?], MarkovChain::sticky(2, 0.98)?)?;
+    let mut bank = LightingFilterBank::new(
+        vec![kind_of_light(70.0)?, kind_of_light(150.0)?],
+        MarkovChain::sticky(2, 0.98)?,
+    )?;
 
     // 2. An image shows 800 orange pixels and nothing blue. Which light is it?
     let seen = ColorMeans::new([(Some(Vector3::new(190.0, 88.0, 205.0)), 800), (None, 0)]);

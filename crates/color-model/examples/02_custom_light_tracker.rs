@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
 use wayfix_color_model::{
     ColorDensity, ColorLocalizer, ColorMeans, ColorModelError, LightingFilter, LightingFilterParams,
-    LightingTracker, LocalizerParams, OdometryStep, Start, YuvImage,
+    LightingTracker, LocalizerParams, OdometryStep, StartPosePrior, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -59,7 +59,7 @@ fn localized(light: RunningMean) -> Result<f64, Box<dyn std::error::Error>> {
     let carpet = ColoredShape::Polygon { color: ColorId(0), vertices: vertices.to_vec() };
     let map = Arc::new(ColorMap::new(vec!["green".into()], vec![carpet])?);
     let camera = PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?;
-    let start = Start::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
+    let start = StartPosePrior::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
     let params = LocalizerParams { max_particles: 200, ..LocalizerParams::default() };
     let mut localizer = ColorLocalizer::new(map, camera, light, &start, params, &mut rng)?;

@@ -16,17 +16,19 @@ pub use error::ColorModelError;
 pub use frame::{PixelSums, PrefixSumImage};
 pub use lighting::{
     ColorDensity, ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
-    LightingBank, LightingDrift, LightingFilter, LightingFilterParams, LightingTracker,
+    LightingDrift, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker,
     SelectedLightingFilter, UnseenColorRule,
 };
 pub use likelihood::{
-    CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams, FrameContext,
-    ImageLikelihood, JointScratch, LightErrorCorrelation, LikelihoodModel, Occlusion, PixelFrame,
-    PixelLikelihood, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PoseView, gather,
+    CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams,
+    ImageLikelihoodChoice, LightErrorCorrelation, LikelihoodFrameInput, LikelihoodModel, PixelLikelihood,
+    PixelLikelihoodFrame, PixelLikelihoodParams, PixelLikelihoodScratch, PixelSpanLikelihood,
+    PixelSumDensity, PredictedMapView, ViewOcclusionModel, gather,
 };
 pub use localizer::{
     CameraLocation, CameraPoseError, CameraPoseNoise, ColorLocalizer, FrameOutcome, GlobalSearchParams,
-    LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate,
+    StartPosePrior,
 };
 pub use prior::{
     KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, random_prior};
 use wayfix_color_model::{
-    ColorMeans, ColorModelError, LightingBank, LightingDrift, LightingFilter, LightingFilterParams,
+    ColorMeans, ColorModelError, LightingDrift, LightingFilter, LightingFilterBank, LightingFilterParams,
     PixelClassifier, YuvImage, YuvStandard,
 };
 use wayfix_gaussian_core::Gaussian;
@@ -133,10 +133,10 @@ fn hostile_steps_leave_every_colour_a_finite_density() {
 fn banks_that_do_not_fit_are_refused() {
     let chain = |n| MarkovChain::sticky(n, 0.9).unwrap();
     let light = |n| filter(common_gain(&BRIGHT[..n], 0.3), LightingFilterParams::default());
-    assert!(LightingBank::new(vec![], chain(1)).is_err());
-    assert!(LightingBank::new(vec![light(5)], chain(2)).is_err());
-    assert!(LightingBank::new(vec![light(5), light(4)], chain(2)).is_err());
-    let mut bank = LightingBank::new(vec![light(5), light(5)], chain(2)).unwrap();
+    assert!(LightingFilterBank::new(vec![], chain(1)).is_err());
+    assert!(LightingFilterBank::new(vec![light(5)], chain(2)).is_err());
+    assert!(LightingFilterBank::new(vec![light(5), light(4)], chain(2)).is_err());
+    let mut bank = LightingFilterBank::new(vec![light(5), light(5)], chain(2)).unwrap();
     let good = means(&support::stacked(&BRIGHT), 0);
     assert_eq!(bank.update_member(2, &good), Err(ColorModelError::NoSuchMember { member: 2, n_members: 2 }));
     assert!(bank.update_member(0, &ColorMeans::default()).is_err() && bank.predict(f64::NAN).is_err());

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use support::painted::{Scene, bank, camera_pose, mount};
 use wayfix_color_model::{
     ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, GlobalSearchParams,
-    ImageLikelihood, LocalizationStatus, LocalizerParams, OdometryStep, Start, YuvImage,
+    ImageLikelihoodChoice, LocalizationStatus, LocalizerParams, OdometryStep, StartPosePrior, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -16,7 +16,7 @@ use wayfix_gaussian_core::Gaussian;
 /// A tenth of the usual effort, for images of a quarter of the size.
 fn params() -> LocalizerParams {
     let search = GlobalSearchParams {
-        n_frames: 4,
+        n_buffered_frames: 4,
         n_sampled_trajectories: 600,
         n_refined_places: 40,
         ..GlobalSearchParams::default()
@@ -24,22 +24,22 @@ fn params() -> LocalizerParams {
     LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
 }
 
-fn localizer(scene: &Scene, start: &Start, rng: &mut ChaCha8Rng) -> ColorLocalizer {
+fn localizer(scene: &Scene, start: &StartPosePrior, rng: &mut ChaCha8Rng) -> ColorLocalizer {
     localizer_with(params(), scene, start, rng)
 }
 
 fn localizer_with(
     params: LocalizerParams,
     scene: &Scene,
-    start: &Start,
+    start: &StartPosePrior,
     rng: &mut ChaCha8Rng,
 ) -> ColorLocalizer {
     ColorLocalizer::new(scene.map.clone(), scene.camera, bank(), start, params, rng)
         .expect("sound parameters")
 }
 
-fn near(pose: Pose2<f64>) -> Start {
-    Start::Near(Gaussian::from_sigmas(pose, &Vector3::new(0.3, 0.3, 0.3)).expect("positive"))
+fn near(pose: Pose2<f64>) -> StartPosePrior {
+    StartPosePrior::Near(Gaussian::from_sigmas(pose, &Vector3::new(0.3, 0.3, 0.3)).expect("positive"))
 }
 
 /// A step of 2 cm forwards and 1° to the left in a tenth of a second.
@@ -102,7 +102,8 @@ fn blobs_instead_of_pixels_correct_a_rough_start() {
         search: GlobalSearchParams { n_sampled_trajectories: 0, ..params().search },
         ..params()
     };
-    let models = (bank(), params.odometry, ImageLikelihood::Features(FeatureLikelihoodParams::default()));
+    let models =
+        (bank(), params.odometry, ImageLikelihoodChoice::Features(FeatureLikelihoodParams::default()));
     let start = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
     let map = scene.map.clone();
     let mut localizer =
@@ -176,15 +177,16 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
         let (mut params, mut rng) = (params(), ChaCha8Rng::seed_from_u64(7));
         change(&mut params);
         let map = scene.map.clone();
-        let made = ColorLocalizer::new(map, scene.camera, bank(), &Start::Anywhere, params, &mut rng);
+        let made =
+            ColorLocalizer::new(map, scene.camera, bank(), &StartPosePrior::Anywhere, params, &mut rng);
         assert!(matches!(made.err(), Some(ColorModelError::OutOfRange { .. })), "{params:?}");
     };
     for value in [f64::NAN, -1.0] {
         refused(&|params| params.pixels.brightness_variation = value);
         refused(&|params| params.pixels.n_effective_pixels = value);
         refused(&|params| params.odometry.relative_sigma = value);
-        refused(&|params| params.camera.rotation_sigma = value);
-        refused(&|params| params.search.interval = value);
+        refused(&|params| params.camera_pose_noise.rotation_sigma = value);
+        refused(&|params| params.search.search_interval = value);
         refused(&|params| params.occlusion.mean_time_hidden = value);
         refused(&|params| params.tempering_min_ess_share = value);
     }
@@ -219,7 +221,7 @@ fn the_number_of_threads_changes_no_bit() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
         pool.install(|| {
             let mut rng = ChaCha8Rng::seed_from_u64(6);
-            let mut localizer = localizer(&scene, &Start::Anywhere, &mut rng);
+            let mut localizer = localizer(&scene, &StartPosePrior::Anywhere, &mut rng);
             follow(&mut localizer, &views, &mut rng)
         })
     };

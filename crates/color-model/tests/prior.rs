@@ -113,7 +113,9 @@ fn venues_that_make_no_prior_are_refused() {
     assert!(matches!(learn(&good, 0, &params), Err(LightingPriorError::TooFew { .. })));
     assert!(matches!(learn(&good[..1], 2, &params), Err(LightingPriorError::TooFew { .. })));
     for bad in [-0.1, 1.0, f64::NAN, f64::INFINITY] {
-        assert!(learn(&good, 2, &PriorLearningParams { color_correlation: bad, ..params.clone() }).is_err());
+        assert!(
+            learn(&good, 2, &PriorLearningParams { prior_color_correlation: bad, ..params.clone() }).is_err()
+        );
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(learn(&good, 2, &PriorLearningParams { n_pseudo_venues: bad, ..params.clone() }).is_err());

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, noisy, stacked};
 use wayfix_color_model::{
     ColorMeans, ColorModelError, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
-    LightingBank, LightingDrift, LightingFilter, LightingFilterParams, LightingTracker,
+    LightingDrift, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker,
 };
 use wayfix_gaussian_core::moment_matched;
 use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
@@ -21,9 +21,9 @@ fn dark() -> Vec<[f64; 3]> {
     BRIGHT.iter().map(darker).collect()
 }
 
-fn bank() -> LightingBank {
+fn bank() -> LightingFilterBank {
     let light = |colors: &[[f64; 3]]| filter(common_gain(colors, 0.15), LightingFilterParams::default());
-    LightingBank::new(
+    LightingFilterBank::new(
         vec![light(&dark()), light(&BRIGHT)],
         MarkovChain::sticky(2, 0.98).expect("valid by construction"),
     )
@@ -53,7 +53,7 @@ fn only_the_active_filter_learns_and_only_it_is_copied() {
 fn members_are_drawn_as_often_as_they_are_probable() {
     let chain = MarkovChain::new(&[vec![0.9, 0.1], vec![0.3, 0.7]], &[0.5, 0.5]).unwrap();
     let lights: Vec<LightingFilter> = bank().members().iter().map(|light| light.as_ref().clone()).collect();
-    let mut bank = LightingBank::new(lights, chain).unwrap();
+    let mut bank = LightingFilterBank::new(lights, chain).unwrap();
     bank.update_member(1, &means(&stacked(&BRIGHT), 0)).unwrap();
     // π₁ⱼ p(z|j) = 0.3 e^(1) and 0.7 e^(0), far below what exp can hold.
     let logs = [-5000.0 + 1.0, -5000.0];
@@ -138,7 +138,7 @@ fn switching_filters_predict_a_colour_unseen_since_the_switch() {
 #[test]
 fn without_switches_one_light_is_a_kalman_filter_for_all() {
     let only = filter(common_gain(&BRIGHT, 0.15), LightingFilterParams::default());
-    let bank = LightingBank::new(vec![only.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
+    let bank = LightingFilterBank::new(vec![only.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(423);
     let mut plain = only;
     let mut jump_markov = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default()).unwrap();
@@ -197,7 +197,7 @@ fn a_walk_makes_the_trackers_as_wide_as_the_filter() {
         common_gain(&BRIGHT, 0.15),
         LightingFilterParams { lighting_drift: walk, ..LightingFilterParams::default() },
     );
-    let bank = LightingBank::new(vec![light.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
+    let bank = LightingFilterBank::new(vec![light.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
     let mut tracker = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default()).unwrap();
     let mut light = light;
     LightingTracker::predict(&mut light, 7.0).unwrap();

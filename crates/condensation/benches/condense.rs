@@ -8,8 +8,8 @@ mod harness;
 
 use harness::measure;
 use wayfix_condensation::{
-    DiffusionKernel, DiscreteFilter, Fft6Descriptor, GlobalDescriptor, GridMove, Hist6Descriptor,
-    MeanVarDescriptor, PositionGrid, RgbImage, SlipProbabilities, ViewGrid,
+    ColorMeanStdDescriptor, DiffusionKernel, DiscreteFilter, DominantGraysDescriptor, Fft6Descriptor,
+    GlobalDescriptor, GridMove, PositionGrid, RgbImage, SlipProbabilities, ViewGrid,
 };
 
 fn main() {
@@ -34,8 +34,11 @@ fn main() {
     let bytes = (0..3 * width * height).map(pixel).collect();
     let scene = RgbImage::from_raw(width as u32, height as u32, bytes).expect("3 bytes a pixel");
     let views = ViewGrid::new((width, height), (256, 256), 16).expect("views that fit");
-    let features: [(&str, &dyn GlobalDescriptor); 3] =
-        [("MeanVar", &MeanVarDescriptor), ("FFT6", &Fft6Descriptor), ("Hist6", &Hist6Descriptor::default())];
+    let features: [(&str, &dyn GlobalDescriptor); 3] = [
+        ("MeanVar", &ColorMeanStdDescriptor),
+        ("FFT6", &Fft6Descriptor),
+        ("Hist6", &DominantGraysDescriptor::default()),
+    ];
     for (name, feature) in features {
         measure(&format!("600 views learned {name}"), 10, || {
             feature.extract_all(&scene, &views).expect("the scene of the views")

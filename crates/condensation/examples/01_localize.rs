@@ -5,16 +5,16 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace, GlobalDescriptor,
-    GridMove, LightChange, MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator,
-    NavigatorParams, PositionGrid, RgbImage, SceneViews, ViewGrid, ViewLocalizer, ViewLocalizerParams,
+    AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace, GlobalDescriptor,
+    GridMove, LightChange, NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams,
+    PositionGrid, RgbImage, SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams,
     shifted,
 };
 
 /// The robot as it really is: at a place it does not know, before a scene darker than the one it learned.
 struct Robot {
     grid: PositionGrid,
-    views: DescriptorTable,
+    views: StateDescriptorTable,
     at: usize,
 }
 
@@ -33,14 +33,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = painting(256, 192).ok_or("no picture")?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
     let params = AppearanceLearningParams::online();
-    let appearance = AppearanceModel::learn(&SceneViews::new(&scene, &views)?, &MeanVarDescriptor, &params)?;
+    let appearance =
+        AppearanceModel::learn(&SceneViews::new(&scene, &views)?, &ColorMeanStdDescriptor, &params)?;
 
     // The robot's world: less contrast, more offset, a bent tone curve, and all views a little beside the learned ones.
     let real = shifted(&LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?, 4, 3);
     let grid = *views.grid();
     let start = grid.state(2, 6).ok_or("outside")?;
     let goal = grid.state(10, 1).ok_or("outside")?;
-    let mut robot = Robot { grid, views: MeanVarDescriptor.extract_all(&real, &views)?, at: start };
+    let mut robot = Robot { grid, views: ColorMeanStdDescriptor.extract_all(&real, &views)?, at: start };
 
     let navigator = Navigator::new(grid, NavigatorParams::default())?;
     let mut localizer = ViewLocalizer::new(Arc::new(appearance), ViewLocalizerParams::default())?;

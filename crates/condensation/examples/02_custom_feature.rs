@@ -5,9 +5,9 @@
 use std::sync::Arc;
 
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, DiscreteStateSpace, GlobalDescriptor, GridMove,
-    JoinedDescriptor, MeanVarDescriptor, PositionGrid, RgbImage, SceneViews, SlipProbabilities, View,
-    ViewGrid, ViewLocalizer, ViewLocalizerParams, shifted,
+    AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, ConcatenatedDescriptor,
+    DiscreteStateSpace, GlobalDescriptor, GridMove, PositionGrid, RgbImage, SceneViews, SlipProbabilities,
+    View, ViewGrid, ViewLocalizer, ViewLocalizerParams, shifted,
 };
 
 /// Mean absolute difference of grey values between neighbours, to the right and down.
@@ -33,7 +33,7 @@ impl GlobalDescriptor for EdgeEnergy {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = bricks(256, 192).ok_or("no picture")?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
-    let feature = JoinedDescriptor::new(vec![Box::new(MeanVarDescriptor), Box::new(EdgeEnergy)]);
+    let feature = ConcatenatedDescriptor::new(vec![Box::new(ColorMeanStdDescriptor), Box::new(EdgeEnergy)]);
     let source = SceneViews::new(&scene, &views)?;
     let appearance =
         Arc::new(AppearanceModel::learn(&source, &feature, &AppearanceLearningParams::normalized())?);

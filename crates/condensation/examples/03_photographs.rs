@@ -10,9 +10,9 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace,
-    Fft6Descriptor, GlobalDescriptor, GridMove, Hist6Descriptor, LightChange, MeanVarDescriptor,
-    NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, PositionGrid, RgbImage, SceneViews,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
+    DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, GridMove, LightChange, NavigationEnvironment,
+    NavigationOutcome, Navigator, NavigatorParams, PositionGrid, RgbImage, SceneViews, StateDescriptorTable,
     ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
 };
 
@@ -21,7 +21,7 @@ const RUNS: u64 = 100;
 /// A robot that really is somewhere, and sees the real scene there.
 struct Drive<'a> {
     grid: PositionGrid,
-    seen: &'a DescriptorTable,
+    seen: &'a StateDescriptorTable,
     at: usize,
 }
 
@@ -65,9 +65,9 @@ fn compare(name: &str, learned: &RgbImage, real: &RgbImage, seed: i32) -> Result
         ];
         for (mode, scene, params) in modes {
             let features: [(&str, &dyn GlobalDescriptor); 3] = [
-                ("MeanVar", &MeanVarDescriptor),
+                ("MeanVar", &ColorMeanStdDescriptor),
                 ("FFT6", &Fft6Descriptor),
-                ("Hist6", &Hist6Descriptor::default()),
+                ("Hist6", &DominantGraysDescriptor::default()),
             ];
             for (feature_name, feature) in features {
                 let appearance =
@@ -88,7 +88,7 @@ fn compare(name: &str, learned: &RgbImage, real: &RgbImage, seed: i32) -> Result
 
 fn runs(
     appearance: &Arc<AppearanceModel>,
-    seen: &DescriptorTable,
+    seen: &StateDescriptorTable,
     grid: PositionGrid,
     choice: ActionSelection,
     seed: i32,

@@ -4,9 +4,9 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, DescriptorTable, DiscreteStateSpace, DominantGrayCriterion, Fft6Descriptor,
-    GlobalDescriptor, Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, RgbImage, View, ViewGrid, grey,
-    mapped, shifted,
+    ColorMeanStdDescriptor, ConcatenatedDescriptor, CondensationError, DiscreteStateSpace,
+    DominantGrayCriterion, DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, RgbImage,
+    StateDescriptorTable, View, ViewGrid, grey, mapped, shifted,
 };
 
 /// A feature without what it knows of neighbouring views.
@@ -24,16 +24,16 @@ impl GlobalDescriptor for Plain<'_> {
 
 fn all_features() -> Vec<Box<dyn GlobalDescriptor + Send>> {
     vec![
-        Box::new(MeanVarDescriptor),
+        Box::new(ColorMeanStdDescriptor),
         Box::new(Fft6Descriptor),
-        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Counts }),
-        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Peaks { sigma: 4.0 } }),
-        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Classes }),
-        Box::new(Hist6Descriptor::default()),
+        Box::new(DominantGraysDescriptor { dominance: DominantGrayCriterion::Counts }),
+        Box::new(DominantGraysDescriptor { dominance: DominantGrayCriterion::Peaks { sigma: 4.0 } }),
+        Box::new(DominantGraysDescriptor { dominance: DominantGrayCriterion::Classes }),
+        Box::new(DominantGraysDescriptor::default()),
     ]
 }
 
-fn assert_equal(got: &DescriptorTable, expected: &DescriptorTable) {
+fn assert_equal(got: &StateDescriptorTable, expected: &StateDescriptorTable) {
     assert_eq!(got.n_states(), expected.n_states());
     for (state, (a, b)) in got.rows().zip(expected.rows()).enumerate() {
         for (x, y) in a.iter().zip(b) {
@@ -61,7 +61,7 @@ proptest! {
             let plain = Plain(feature.as_ref()).extract_all(&scene, &views).unwrap();
             assert_equal(&feature.extract_all(&scene, &views).unwrap(), &plain);
         }
-        let joined = JoinedDescriptor::new(all_features());
+        let joined = ConcatenatedDescriptor::new(all_features());
         assert_equal(&joined.extract_all(&scene, &views).unwrap(), &Plain(&joined).extract_all(&scene, &views).unwrap());
     }
 
@@ -70,7 +70,7 @@ proptest! {
         let (whole, width) = (View::whole(&scene).unwrap(), scene.width() as usize);
         let n = whole.n_pixels() as f64;
         let mut mean_var = [0.0; 6];
-        MeanVarDescriptor.extract(&whole, &mut mean_var);
+        ColorMeanStdDescriptor.extract(&whole, &mut mean_var);
         for c in 0..3 {
             let values = || scene.pixels().map(|pixel| f64::from(pixel[c]));
             let mean = values().sum::<f64>() / n;
@@ -95,7 +95,7 @@ proptest! {
 fn classes_follow_gain_and_offset() {
     let row = |values: &[u8]| RgbImage::from_fn(8, 1, |x, _| [values[x as usize]; 3].into());
     let extract = |values: &[u8], features: &mut [f64]| {
-        Hist6Descriptor { dominance: DominantGrayCriterion::Classes }
+        DominantGraysDescriptor { dominance: DominantGrayCriterion::Classes }
             .extract(&View::whole(&row(values)).unwrap(), features);
     };
     let values = [10, 14, 20, 70, 72, 90, 140, 150];
@@ -128,7 +128,7 @@ fn sizes_that_do_not_fit_are_refused() {
     let views = ViewGrid::new((10, 8), (4, 4), 2).unwrap();
     let other = RgbImage::new(9, 8);
     assert!(matches!(
-        MeanVarDescriptor.extract_all(&other, &views),
+        ColorMeanStdDescriptor.extract_all(&other, &views),
         Err(CondensationError::Dimension { .. })
     ));
     assert!(View::new(&other, (6, 0), (4, 4)).is_err() && views.corner(views.grid().n_states()).is_err());

@@ -6,16 +6,17 @@ mod common;
 
 use common::scene;
 use wayfix_condensation::{
-    AppearanceLearningParams, AppearanceModel, CondensationError, DescriptorTable, DiscreteStateSpace,
-    GlobalDescriptor, GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, PictureViews,
-    PositionGrid, RgbImage, SceneViews, TransitionModel, View, ViewDisturbance, ViewGrid, shifted,
+    AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, CondensationError, DiscreteStateSpace,
+    GlobalDescriptor, GridMove, LightChange, LikelihoodTail, OneViewPerPicture, PositionGrid, RgbImage,
+    SceneViews, StateDescriptorTable, TransitionCounts, TransitionModel, UnknownShiftAndLight, View,
+    ViewGrid, shifted,
 };
 
 /// SciPy: `chi2.sf(4, 2)`; each component is one sigma of noise times sqrt(2) away.
 #[test]
 fn p_value_is_the_chi_squared_tail() {
     // Spread of each component over the states: 1, of which noise has all.
-    let table = DescriptorTable::from_rows(&[vec![-1.0, -1.0], vec![1.0, 1.0]]).unwrap();
+    let table = StateDescriptorTable::from_rows(&[vec![-1.0, -1.0], vec![1.0, 1.0]]).unwrap();
     let appearance = AppearanceModel::from_spread(table, 1.0).unwrap();
     let off = 2.0_f64.sqrt();
     assert!((appearance.p_value(1, &[1.0 + off, 1.0 - off]).unwrap() - 0.1353352832366127).abs() < 1e-12);
@@ -31,8 +32,9 @@ fn the_same_place_is_told_from_others() {
     let views = ViewGrid::new((240, 176), (64, 64), 16).unwrap();
     let source = SceneViews::new(&learned, &views).unwrap();
     let appearance =
-        AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
-    let seen = MeanVarDescriptor.extract_all(&shifted(&learned, 2, -2), &views).unwrap();
+        AppearanceModel::learn(&source, &ColorMeanStdDescriptor, &AppearanceLearningParams::normalized())
+            .unwrap();
+    let seen = ColorMeanStdDescriptor.extract_all(&shifted(&learned, 2, -2), &views).unwrap();
     let same = appearance.p_values_of(&seen).unwrap();
     let others = appearance.p_values_between_states().unwrap();
     assert!(same.mean > 0.9 && others.mean < 0.1, "{same:?} {others:?}");
@@ -41,21 +43,22 @@ fn the_same_place_is_told_from_others() {
 #[test]
 fn pictures_of_single_places_can_be_learned() {
     let pictures: Vec<RgbImage> = (0..4).map(|seed| scene(48, 32, seed)).collect();
-    let source = PictureViews::new(&pictures).unwrap();
+    let source = OneViewPerPicture::new(&pictures).unwrap();
     let appearance =
-        AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
+        AppearanceModel::learn(&source, &ColorMeanStdDescriptor, &AppearanceLearningParams::normalized())
+            .unwrap();
     let mut features = [0.0; 6];
-    MeanVarDescriptor.extract(&View::whole(&pictures[2]).unwrap(), &mut features);
+    ColorMeanStdDescriptor.extract(&View::whole(&pictures[2]).unwrap(), &mut features);
     assert_eq!(appearance.features(0).unwrap().get(2).unwrap(), features);
     assert!((appearance.p_value(2, &features).unwrap() - 1.0).abs() < 1e-12);
-    assert!(PictureViews::new(&[]).is_err() && PictureViews::new(&[RgbImage::new(5, 0)]).is_err());
+    assert!(OneViewPerPicture::new(&[]).is_err() && OneViewPerPicture::new(&[RgbImage::new(5, 0)]).is_err());
 }
 
 #[test]
 fn moves_are_learned_from_a_log() {
     let grid = PositionGrid::new(4, 1).unwrap();
     let right = GridMove { dx: 1, dy: 0 };
-    let mut log = MoveCounts::new(&grid);
+    let mut log = TransitionCounts::new(&grid);
     for to in [1, 1, 1, 0] {
         log.record(0, right, to).unwrap();
     }
@@ -74,12 +77,12 @@ fn parameters_out_of_range_are_refused() {
     let views = ViewGrid::new((48, 32), (16, 16), 8).unwrap();
     let source = SceneViews::new(&learned, &views).unwrap();
     let learn = |params: AppearanceLearningParams| {
-        AppearanceModel::learn(&source, &MeanVarDescriptor, &params).map(|_| ())
+        AppearanceModel::learn(&source, &ColorMeanStdDescriptor, &params).map(|_| ())
     };
     let normalized = AppearanceLearningParams::normalized;
     assert!(learn(normalized()).is_ok());
-    let disturbance = ViewDisturbance { dx: f64::NAN, ..normalized().disturbance_sigmas };
-    assert!(learn(AppearanceLearningParams { disturbance_sigmas: disturbance, ..normalized() }).is_err());
+    let disturbance = UnknownShiftAndLight { dx: f64::NAN, ..normalized().shift_and_light_sigmas };
+    assert!(learn(AppearanceLearningParams { shift_and_light_sigmas: disturbance, ..normalized() }).is_err());
     assert!(
         learn(AppearanceLearningParams {
             likelihood_tail: LikelihoodTail::StudentT { dof: 0.0 },
@@ -92,6 +95,7 @@ fn parameters_out_of_range_are_refused() {
     let dark = LightChange { gain: -1.0, ..LightChange::SAME };
     assert!(learn(AppearanceLearningParams { light_changes: vec![dark], ..normalized() }).is_err());
     assert!(
-        AppearanceModel::from_spread(DescriptorTable::from_rows(&[vec![1.0]]).unwrap(), f64::NAN).is_err()
+        AppearanceModel::from_spread(StateDescriptorTable::from_rows(&[vec![1.0]]).unwrap(), f64::NAN)
+            .is_err()
     );
 }

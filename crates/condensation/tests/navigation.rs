@@ -10,16 +10,17 @@ use common::{Drive, scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, DiscreteStateSpace,
-    Fft6Descriptor, GlobalDescriptor, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
+    DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
     NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
-    SceneViews, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped, shifted,
+    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped,
+    shifted,
 };
 
 struct Trial {
     views: ViewGrid,
     appearance: Arc<AppearanceModel>,
-    seen: DescriptorTable,
+    seen: StateDescriptorTable,
 }
 
 impl Trial {
@@ -66,7 +67,7 @@ fn every_feature_reaches_every_goal_in_another_light() {
     let real = shifted(&OTHER_LIGHT.apply(&learned).unwrap(), 4, 3);
     let matched = mapped(&real, &histogram_match(&real, &learned));
     let features: [&dyn GlobalDescriptor; 3] =
-        [&MeanVarDescriptor, &Fft6Descriptor, &Hist6Descriptor::default()];
+        [&ColorMeanStdDescriptor, &Fft6Descriptor, &DominantGraysDescriptor::default()];
     for (number, feature) in features.into_iter().enumerate() {
         let modes =
             [(&matched, AppearanceLearningParams::normalized()), (&real, AppearanceLearningParams::online())];
@@ -90,7 +91,7 @@ fn every_feature_reaches_every_goal_in_another_light() {
 fn light_is_found_together_with_the_place() {
     let learned = scene(240, 176, 3);
     let trial = Trial::new(
-        &MeanVarDescriptor,
+        &ColorMeanStdDescriptor,
         &learned,
         &OTHER_LIGHT.apply(&learned).unwrap(),
         &AppearanceLearningParams::online(),
@@ -122,7 +123,8 @@ fn informed_choice_arrives_too() {
 #[test]
 fn a_kidnapped_robot_notices_and_still_arrives() {
     let learned = scene(240, 176, 3);
-    let trial = Trial::new(&MeanVarDescriptor, &learned, &learned, &AppearanceLearningParams::normalized());
+    let trial =
+        Trial::new(&ColorMeanStdDescriptor, &learned, &learned, &AppearanceLearningParams::normalized());
     let n = trial.views.grid().n_states();
     for seed in [1, 4, 7] {
         // Put far away at the third look, when it has long been sure.
@@ -136,7 +138,7 @@ fn a_kidnapped_robot_notices_and_still_arrives() {
 #[test]
 fn a_constant_scene_ends_unsure() {
     let grey = RgbImage::from_pixel(240, 176, [90; 3].into());
-    let trial = Trial::new(&MeanVarDescriptor, &grey, &grey, &AppearanceLearningParams::normalized());
+    let trial = Trial::new(&ColorMeanStdDescriptor, &grey, &grey, &AppearanceLearningParams::normalized());
     let (report, _, localizer) = trial.run(2, ActionSelection::Greedy, None);
     assert_eq!(
         (report.arrival, report.steps),
@@ -165,8 +167,9 @@ impl NavigationEnvironment<PlaceGraphMove> for Walk {
 fn a_goal_without_a_way_is_unreachable() {
     let graph = PlaceGraph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]).unwrap();
     let places: Vec<Vec<f64>> = (0..4).map(|state| vec![10.0 * f64::from(state)]).collect();
-    let appearance =
-        Arc::new(AppearanceModel::from_spread(DescriptorTable::from_rows(&places).unwrap(), 0.1).unwrap());
+    let appearance = Arc::new(
+        AppearanceModel::from_spread(StateDescriptorTable::from_rows(&places).unwrap(), 0.1).unwrap(),
+    );
     let navigator = Navigator::new(graph.clone(), NavigatorParams::default()).unwrap();
     let mut localizer = ViewLocalizer::new(appearance, ViewLocalizerParams::default()).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(1);

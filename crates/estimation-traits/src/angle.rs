@@ -92,6 +92,9 @@ impl<T: RealField + Copy> LieGroup for Angle<T> {
     fn adjoint(&self) -> TangentMatrix<Self> {
         TangentMatrix::<Self>::identity()
     }
+    fn log_jacobian(&self) -> TangentMatrix<Self> {
+        TangentMatrix::<Self>::identity()
+    }
 }
 
 #[cfg(test)]

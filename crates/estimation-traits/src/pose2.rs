@@ -123,6 +123,26 @@ impl<T: RealField + Copy> LieGroup for Pose2<T> {
             one,
         )
     }
+    /// $`\log g = (V^{-1} t, θ)`$, so that the columns are $`V^{-1} R`$ and $`(∂V^{-1}/∂θ)\, t`$, with
+    /// $`V^{-1} = \begin{pmatrix} f & θ/2 \\ -θ/2 & f \end{pmatrix}`$, $`f = \tfrac{θ}{2} \cot \tfrac{θ}{2}`$.
+    fn log_jacobian(&self) -> Matrix3<T> {
+        let theta = self.heading();
+        let half: T = nalgebra::convert(0.5);
+        let v = arc_matrix(theta);
+        let (a, b) = (v[(0, 0)], v[(1, 0)]);
+        let inverse = v.transpose() / (a * a + b * b);
+        // f' = (sin θ - θ) / (4 sin² θ/2); its series where that cancels.
+        let half_sin = (theta * half).sin();
+        let slope = if theta.abs() < T::default_epsilon().sqrt().sqrt() {
+            -theta * nalgebra::convert(1.0 / 6.0)
+        } else {
+            (theta.sin() - theta) / (half_sin * half_sin * nalgebra::convert(4.0))
+        };
+        let mut jacobian = (inverse * self.rotation_matrix()).to_homogeneous();
+        jacobian[(0, 2)] = slope * self.x() + half * self.y();
+        jacobian[(1, 2)] = slope * self.y() - half * self.x();
+        jacobian
+    }
 }
 
 /// V(ω): where a unit body velocity ends after turning by ω on the way.

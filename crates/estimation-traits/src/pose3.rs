@@ -74,6 +74,17 @@ impl<T: RealField + Copy> LieGroup for Pose3<T> {
         adjoint.fixed_view_mut::<3, 3>(0, 3).copy_from(&(self.translation.cross_matrix() * r));
         adjoint
     }
+    /// $`\log g = (V^{-1}(ω) t, ω)`$, so that the blocks are $`V^{-1} R = J_r^{-1}`$, 0, $`(∂V^{-1} t/∂ω)\, J_r^{-1}`$ and $`J_r^{-1}`$.
+    fn log_jacobian(&self) -> Matrix6<T> {
+        let r = scaled_axis(&self.rotation);
+        let right = left_jacobian_inverse(&-r);
+        let mut jacobian = Matrix6::zeros();
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&right);
+        jacobian.fixed_view_mut::<3, 3>(3, 3).copy_from(&right);
+        let turned = left_jacobian_inverse_derivative(&r, &self.translation) * right;
+        jacobian.fixed_view_mut::<3, 3>(0, 3).copy_from(&turned);
+        jacobian
+    }
 }
 
 fn split<T: RealField + Copy>(v: &Vector6<T>) -> (Vector3<T>, Vector3<T>) {
@@ -125,3 +136,32 @@ fn left_jacobian_inverse<T: RealField + Copy>(r: &Vector3<T>) -> Matrix3<T> {
     let cross = r.cross_matrix();
     Matrix3::identity() - cross * half + cross * cross * c
 }
+
+/// $`∂\big(V^{-1}(ω)\, t\big)/∂ω`$ of $`V^{-1}(ω)\, t = t - \tfrac12 ω × t + c(θ)\, ω × (ω × t)`$, $`θ = |ω|`$.
+fn left_jacobian_inverse_derivative<T: RealField + Copy>(r: &Vector3<T>, t: &Vector3<T>) -> Matrix3<T> {
+    let half: T = nalgebra::convert(0.5);
+    let angle = r.norm();
+    let square = angle * angle;
+    // c = (1 - f) / θ² with f = θ/2 cot θ/2, and its slope c'/θ.
+    let (c, slope): (T, T) = if angle < nalgebra::convert(0.1) {
+        let polynomial = |terms: [f64; 4]| {
+            terms.iter().rev().fold(T::zero(), |sum, term| sum * square + nalgebra::convert(*term))
+        };
+        (polynomial(C_SERIES), polynomial(C_SLOPE_SERIES))
+    } else {
+        let half_sin = (angle * half).sin();
+        let f = angle * half * (angle * half).cos() / half_sin;
+        let f_slope = (angle.sin() - angle) / (half_sin * half_sin * nalgebra::convert(4.0));
+        let c = (T::one() - f) / square;
+        (c, (-f_slope / angle - c - c) / square)
+    };
+    let double_cross = r * r.dot(t) - t * square;
+    let derivative = Matrix3::identity() * r.dot(t) + r * t.transpose()
+        - t * r.transpose() * nalgebra::convert::<f64, T>(2.0);
+    t.cross_matrix() * half + derivative * c + double_cross * r.transpose() * slope
+}
+
+/// Taylor coefficients of c in θ²: $`|B_{2k}|/(2k)!`$ from k = 1.
+const C_SERIES: [f64; 4] = [1.0 / 12.0, 1.0 / 720.0, 1.0 / 30_240.0, 1.0 / 1_209_600.0];
+/// Those of c'/θ.
+const C_SLOPE_SERIES: [f64; 4] = [2.0 / 720.0, 4.0 / 30_240.0, 6.0 / 1_209_600.0, 8.0 / 47_900_160.0];

@@ -11,7 +11,7 @@ use wayfix_evaluation::plot::{
     AxisScale, ConsistencyPlot, EstimatedLandmark, LinePlot, MapPlot, PlotError, PlotSeries, PoseErrorPlot,
     PoseErrorSample, StepTimesPlot,
 };
-use wayfix_evaluation::report::{MachineInfo, Metric, Report, ReportRun, ReportSuite, table};
+use wayfix_evaluation::report::{FullReport, MachineInfo, Metric, ReportRun, ReportSuite, table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "target/report-page".to_owned()));
@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         suites.push(ReportSuite { name: name.to_owned(), runs });
     }
     let commit = wayfix_evaluation::report::commit(&std::env::current_dir()?);
-    let report = Report { suites, seed: 1, commit, machine: MachineInfo::detect() };
+    let report =
+        FullReport { suites, seed: 1, commit, machine: MachineInfo::detect(), ..FullReport::default() };
     report.write(&folder)?;
     print!("{}", table::report(&report, table::TableStyle::of_stdout()));
     println!("{}", folder.join("index.html").display());

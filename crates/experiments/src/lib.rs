@@ -14,6 +14,7 @@ pub mod fixtures;
 pub mod monobot;
 pub mod regress;
 pub mod simplification;
+mod thinned_positions;
 pub mod venues;
 mod views_paper;
 

@@ -7,31 +7,31 @@ use nalgebra::Vector2;
 use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
-use wayfix_line_extract::{PointDistance, douglas_peucker, simplify};
+use wayfix_line_extract::{PointDistanceReference, douglas_peucker, simplify};
 
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::system::Stopwatch;
 
 type Chain = Vec<Vector2<f64>>;
 
-/// Compares plain Douglas-Peucker with the convex-hull variant on `n_chains` random chains of four kinds, and times the worst case of the plain one.
+/// Compares plain Douglas-Peucker with the convex-hull variant on `n_polylines` random chains of four kinds, and times the worst case of the plain one.
 ///
 /// # Errors
 /// Returns an error if a chain is invalid.
-pub fn simplification(n_chains: u32, seed: u64) -> Result<ReportRun> {
+pub fn simplification(n_polylines: u32, seed: u64) -> Result<ReportRun> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (mut n_differ, mut kept, mut points, mut excess) = (0, 0, 0, f64::NEG_INFINITY);
-    for k in 0..n_chains {
+    for k in 0..n_polylines {
         let chain = random_chain(k, &mut rng);
         let epsilon = rng.random_range(0.01..2.0);
         let indices = simplify(&chain, epsilon)?;
-        n_differ += u32::from(indices != douglas_peucker(&chain, epsilon, PointDistance::Line)?);
+        n_differ += u32::from(indices != douglas_peucker(&chain, epsilon, PointDistanceReference::Line)?);
         kept += indices.len();
         points += chain.len();
         excess = farthest(&chain, &indices).map_or(excess, |farthest| excess.max(farthest - epsilon));
     }
     let metrics = vec![
-        Metric::new("n_chains", f64::from(n_chains), ""),
+        Metric::new("n_polylines", f64::from(n_polylines), ""),
         Metric::new("n_polylines_simplified_differently", f64::from(n_differ), ""),
         Metric::new("kept_point_share", kept as f64 / points as f64, ""),
         Metric::new("tolerance_excess_m", excess, "m"),
@@ -39,7 +39,7 @@ pub fn simplification(n_chains: u32, seed: u64) -> Result<ReportRun> {
     let timings = vec![
         timed("simplify_zigzag_100000_ms", || simplify(&zigzag(100_000), 1e-6).map(drop))?,
         timed("classic_zigzag_5000_ms", || {
-            douglas_peucker(&zigzag(5_000), 1e-6, PointDistance::Line).map(drop)
+            douglas_peucker(&zigzag(5_000), 1e-6, PointDistanceReference::Line).map(drop)
         })?,
     ];
     Ok(ReportRun { metrics, timings, ..ReportRun::default() })

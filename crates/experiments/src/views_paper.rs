@@ -1,7 +1,7 @@
 use wayfix_evaluation::report::Metric;
 use wayfix_systems::views::DescriptorKind;
 
-/// A scene's rows in Tables 1 to 3; features in the order of [`DescriptorKind::OF_THE_PAPER`]. [Kasprzak & Szynkiewicz]
+/// A scene's rows in the paper's tables; features in the order of [`DescriptorKind::OF_THE_PAPER`]. [Kasprzak & Szynkiewicz, Tables 1–3]
 ///
 /// ```
 /// use wayfix_experiments::PaperSceneRows;

@@ -39,11 +39,15 @@ fn a_corridor_that_did_not_change_is_found_again() {
     assert_eq!((run.events["place"], run.events["frame"]), (50, 50));
     // The features of a frame are exactly those of its place, and places more than two apart look different.
     for feature in ["mean_std", "fourier6", "dominant_grays", "joined"] {
-        assert_eq!(metric(&run, &format!("{feature}_share_single_frame")), 1.0, "{feature}");
+        assert_eq!(metric(&run, &format!("{feature}_localized_frame_share_single_frame")), 1.0, "{feature}");
     }
-    assert_eq!(metric(&run, "joined_share"), 1.0);
-    assert_eq!(metric(&run, "joined_share"), metric(&run, "joined_share_swapped"), "both are the same");
-    assert!(metric(&run, "joined_correlation_length") > 1.0, "neighbouring frames overlap");
+    assert_eq!(metric(&run, "joined_localized_frame_share"), 1.0);
+    assert_eq!(
+        metric(&run, "joined_localized_frame_share"),
+        metric(&run, "joined_localized_frame_share_swapped"),
+        "both are the same"
+    );
+    assert!(metric(&run, "joined_neighbour_frame_correlation_length") > 1.0, "neighbouring frames overlap");
     assert_eq!(run.figures.len(), 3);
 }
 

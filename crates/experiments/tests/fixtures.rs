@@ -7,7 +7,7 @@ use wayfix_experiments::fixtures::{
     StoredFixture, StoredFixtureDifference, StoredFixtureError, build, check,
 };
 use wayfix_scene_sim::Scenario;
-use wayfix_sensor_log::{OpenOptions, open};
+use wayfix_sensor_log::{LogOpenOptions, open};
 
 const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 
@@ -22,12 +22,13 @@ fn differences(folder: &Path) -> Vec<StoredFixtureDifference> {
 fn the_stored_logs_are_what_their_seeds_give_and_light() {
     let stored = check(STORED).unwrap_or_else(|error| panic!("{error}"));
     let n_bytes: usize = stored.iter().map(|log| log.n_bytes).sum();
-    // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, those with a camera below 15 MB together.
-    let with_camera = |log: &&StoredFixture| log.name.starts_with("color_") || log.name.starts_with("store_");
+    // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, all together below 20 MB.
+    let with_camera = |log: &&StoredFixture| {
+        ["color_", "store_", "film_", "scene_"].iter().any(|kind| log.name.starts_with(kind))
+    };
     let most = |log: &StoredFixture| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
-    let n_camera_bytes: usize = stored.iter().filter(with_camera).map(|log| log.n_bytes).sum();
     assert!(stored.iter().all(|log| with_camera(&log) || log.n_bytes < most(log)), "{stored:?}");
-    assert!(n_camera_bytes < 15_000_000 && n_bytes - n_camera_bytes < 6_000_000, "{stored:?}");
+    assert!(n_bytes < 20_000_000, "{stored:?}");
 }
 
 #[test]
@@ -38,23 +39,32 @@ fn a_stored_log_reads_back_as_simulated() {
         let simulated =
             scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed)).expect("valid parameters");
         let path = Path::new(STORED).join(scenario.name).with_extension("mcap");
-        let (records, report) = open(path, &OpenOptions::default()).expect("a log").read_all();
+        let (records, report) = open(path, &LogOpenOptions::default()).expect("a log").read_all();
         assert_eq!(report.n_problems(), 0, "{}", scenario.name);
         assert_eq!(records, simulated, "{}", scenario.name);
+    }
+}
+
+/// A copy of the stored logs: simulating them again costs seconds.
+fn copied(folder: &Path) {
+    for entry in fs::read_dir(STORED).expect("the stored logs") {
+        let path = entry.expect("an entry").path();
+        fs::copy(&path, folder.join(path.file_name().expect("a name"))).expect("copied");
     }
 }
 
 #[test]
 fn what_differs_is_named() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let stored = build(folder.path()).expect("built");
-    assert_eq!(check(folder.path()).expect("the same"), stored);
+    copied(folder.path());
+    let stored = ["loop_known.mcap", "loop_unlabelled.mcap", "office_velocity.mcap"];
+    let stored = stored.map(|name| folder.path().join(name));
 
-    let mut bytes = fs::read(&stored[0].path).expect("readable");
+    let mut bytes = fs::read(&stored[0]).expect("readable");
     bytes[100] ^= 1;
-    fs::write(&stored[0].path, &bytes).expect("writable");
-    fs::write(&stored[1].path, &fs::read(&stored[1].path).expect("readable")[..50]).expect("writable");
-    fs::remove_file(&stored[2].path).expect("there");
+    fs::write(&stored[0], &bytes).expect("writable");
+    fs::write(&stored[1], &fs::read(&stored[1]).expect("readable")[..50]).expect("writable");
+    fs::remove_file(&stored[2]).expect("there");
     fs::write(folder.path().join("retired.mcap"), b"").expect("writable");
 
     let found = differences(folder.path());
@@ -65,16 +75,22 @@ fn what_differs_is_named() {
         "{}",
         found[1]
     );
-    assert_eq!(found[2], StoredFixtureDifference::Missing { path: stored[2].path.clone() });
+    assert_eq!(found[2], StoredFixtureDifference::Missing { path: stored[2].clone() });
     assert_eq!(found[3], StoredFixtureDifference::Stray { path: folder.path().join("retired.mcap") });
 }
 
 #[test]
-fn a_missing_folder_is_made_by_building_and_named_by_checking() {
+fn building_makes_a_missing_folder_and_the_stored_bytes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let nowhere = folder.path().join("not").join("yet");
     assert!(differences(&nowhere).iter().all(|d| matches!(d, StoredFixtureDifference::Missing { .. })));
-    assert_eq!(build(&nowhere).expect("built").len(), check(STORED).expect("the same").len());
+    let built = build(&nowhere).expect("built");
+    assert!(built.len() > 10);
+    for StoredFixture { path, n_bytes, .. } in built {
+        let bytes = fs::read(&path).expect("written");
+        let stored = fs::read(Path::new(STORED).join(path.file_name().expect("a name"))).expect("stored");
+        assert!(bytes.len() == n_bytes && bytes == stored, "{}", path.display());
+    }
     let a_file = folder.path().join("file");
     fs::write(&a_file, b"").expect("writable");
     assert!(matches!(build(&a_file), Err(StoredFixtureError::Io { .. })));

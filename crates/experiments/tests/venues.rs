@@ -56,7 +56,11 @@ fn painted_balls_are_told_from_painted_carpets() {
     let run = venues::run(folder.path()).unwrap();
     assert_eq!((run.events["image"], run.events["image_without_carpet"]), (10, 0));
     // Ball and carpet lie some 50 levels of U and V apart, noise scatters them by less than 8: nothing to confuse.
-    for name in ["ball_rate_worst", "independent_rate_worst", "oracle_rate_worst"] {
+    for name in [
+        "joint_prior_classification_rate_worst",
+        "independent_classification_rate_worst",
+        "oracle_classification_rate_worst",
+    ] {
         assert!(metric(&run, name) > 0.999, "{name}: {}", metric(&run, name));
     }
     // Light scales both colours, so carpets do foretell balls here.

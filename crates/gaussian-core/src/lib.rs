@@ -45,7 +45,8 @@ pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
 pub use hierarchical::{
-    GroupStatistics, HierarchicalFit, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
+    HierarchicalGaussianFit, HierarchicalGaussianParams, InverseWishart, MeanPrior, PooledGroupEstimate,
+    fit_hierarchical,
 };
 pub use likelihood::GaussianLikelihood;
 pub use merge::moment_matched;

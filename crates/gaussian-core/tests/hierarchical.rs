@@ -7,8 +7,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_gaussian_core::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalParams, InverseWishart, IterationError, MeanPrior,
-    fit_hierarchical,
+    Gaussian, GaussianError, HierarchicalGaussianParams, InverseWishart, IterationError, MeanPrior,
+    PooledGroupEstimate, fit_hierarchical,
 };
 
 const D: usize = 6;
@@ -28,12 +28,12 @@ fn known_prior(seed: u64) -> Gaussian<DVector<f64>> {
 }
 
 /// Groups of one to five observations in which whole blocks are missing; a noise of variance 0.5.
-fn draw_groups(prior: &Gaussian<DVector<f64>>, n: usize, rng: &mut ChaCha8Rng) -> Vec<GroupStatistics> {
+fn draw_groups(prior: &Gaussian<DVector<f64>>, n: usize, rng: &mut ChaCha8Rng) -> Vec<PooledGroupEstimate> {
     let factor = prior.covariance().clone().cholesky().unwrap().unpack();
     (0..n)
         .map(|_| {
             let theta = prior.mean() + &factor * normal(rng, D);
-            let mut group = GroupStatistics::new(D);
+            let mut group = PooledGroupEstimate::new(D);
             for _ in 0..rng.random_range(1..6) {
                 let seen: Vec<usize> = match rng.random_range(0..3) {
                     0 => (0..3).collect(),
@@ -61,8 +61,11 @@ fn the_objective_never_falls() {
         let n = [3, 10, 40][seed as usize % 3];
         let groups = draw_groups(&known_prior(seed + 1000), n, &mut rng);
         let mean_prior = (seed % 2 == 0).then(|| MeanPrior { mean: DVector::zeros(D), pseudo_groups: 0.01 });
-        let params =
-            HierarchicalParams { covariance_prior: hyperprior(4.0), mean_prior, ..Default::default() };
+        let params = HierarchicalGaussianParams {
+            covariance_prior: hyperprior(4.0),
+            mean_prior,
+            ..Default::default()
+        };
         let fit = fit_hierarchical(&groups, &params).unwrap();
         assert!(fit.iterations() > 2, "seed {seed} had nothing to climb");
         for pair in fit.objective.windows(2) {
@@ -84,7 +87,7 @@ fn a_known_prior_is_recovered_within_sampling_error() {
     let fits: Vec<_> = (0..SETS)
         .map(|seed| {
             let groups = draw_groups(&truth, GROUPS, &mut ChaCha8Rng::seed_from_u64(100 + seed as u64));
-            let params = HierarchicalParams { covariance_prior: prior.clone(), ..Default::default() };
+            let params = HierarchicalGaussianParams { covariance_prior: prior.clone(), ..Default::default() };
             fit_hierarchical(&groups, &params).unwrap().gaussian
         })
         .collect();
@@ -118,20 +121,20 @@ fn exact_complete_observations_give_the_sample_moments() {
     let groups: Vec<_> = samples
         .iter()
         .map(|sample| {
-            let mut group = GroupStatistics::new(D);
+            let mut group = PooledGroupEstimate::new(D);
             group.observe(&[0, 1, 2, 3, 4, 5], sample.as_slice(), &[0.0; D]).unwrap();
             group
         })
         .collect();
     let mean = samples.iter().sum::<DVector<f64>>() / 20.0;
     let scatter = samples.iter().map(|x| (x - &mean) * (x - &mean).transpose()).sum::<DMatrix<f64>>();
-    let fit = fit_hierarchical(&groups, &HierarchicalParams::default()).unwrap();
+    let fit = fit_hierarchical(&groups, &HierarchicalGaussianParams::default()).unwrap();
     // Means of size 10, conditioning below 100: some dozen roundings.
     assert_abs_diff_eq!(fit.gaussian.mean(), &mean, epsilon = 1e-13);
     assert_abs_diff_eq!(*fit.gaussian.covariance(), &scatter / 20.0, epsilon = 1e-12);
     // With a hyperprior: its scale and degrees of freedom join in. [Gelman et al. 2003, section 3.6]
     let prior = hyperprior(2.0).unwrap();
-    let params = HierarchicalParams { covariance_prior: Some(prior.clone()), ..Default::default() };
+    let params = HierarchicalGaussianParams { covariance_prior: Some(prior.clone()), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
     let expected = (scatter + prior.scale()) / (20.0 + PSEUDO_GROUPS);
     assert_abs_diff_eq!(*fit.gaussian.covariance(), expected, epsilon = 1e-12);
@@ -140,50 +143,54 @@ fn exact_complete_observations_give_the_sample_moments() {
 #[test]
 fn silent_groups_change_nothing() {
     let mut groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
-    let params = HierarchicalParams { covariance_prior: hyperprior(4.0), ..Default::default() };
+    let params = HierarchicalGaussianParams { covariance_prior: hyperprior(4.0), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
-    groups.push(GroupStatistics::new(D));
+    groups.push(PooledGroupEstimate::new(D));
     assert_eq!(fit_hierarchical(&groups, &params).unwrap(), fit);
 }
 
 #[test]
 fn what_determines_no_gaussian_is_refused() {
     let groups = draw_groups(&known_prior(1), D, &mut ChaCha8Rng::seed_from_u64(1));
-    let flat = HierarchicalParams::default();
-    let step =
-        |groups: &[GroupStatistics], params: &HierarchicalParams| match fit_hierarchical(groups, params) {
-            Err(IterationError::Step(error)) => error,
-            other => panic!("expected a refusal, got {other:?}"),
-        };
+    let flat = HierarchicalGaussianParams::default();
+    let step = |groups: &[PooledGroupEstimate], params: &HierarchicalGaussianParams| match fit_hierarchical(
+        groups, params,
+    ) {
+        Err(IterationError::Step(error)) => error,
+        other => panic!("expected a refusal, got {other:?}"),
+    };
     assert!(matches!(step(&groups, &flat), GaussianError::TooFew { needed: 7, got: 6, .. }));
     assert!(matches!(step(&[], &flat), GaussianError::Empty { .. }));
-    let with_prior = HierarchicalParams { covariance_prior: hyperprior(1.0), ..flat.clone() };
-    assert!(matches!(step(&[GroupStatistics::new(2)], &with_prior), GaussianError::Dimension { .. }));
-    assert_eq!(step(&[GroupStatistics::new(D)], &with_prior), GaussianError::Unobserved { coordinate: 0 });
+    let with_prior = HierarchicalGaussianParams { covariance_prior: hyperprior(1.0), ..flat.clone() };
+    assert!(matches!(step(&[PooledGroupEstimate::new(2)], &with_prior), GaussianError::Dimension { .. }));
+    assert_eq!(
+        step(&[PooledGroupEstimate::new(D)], &with_prior),
+        GaussianError::Unobserved { coordinate: 0 }
+    );
     // The same exact vector again and again has no covariance.
-    let mut group = GroupStatistics::new(1);
+    let mut group = PooledGroupEstimate::new(1);
     group.observe(&[0], &[2.0], &[0.0]).unwrap();
     assert!(matches!(step(&vec![group; 5], &flat), GaussianError::NotPositiveDefinite { .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let params = HierarchicalParams { tolerance: bad, ..with_prior.clone() };
+        let params = HierarchicalGaussianParams { tolerance: bad, ..with_prior.clone() };
         assert!(matches!(step(&groups, &params), GaussianError::Parameter { .. }));
         let mean_prior = Some(MeanPrior { mean: DVector::zeros(D), pseudo_groups: bad });
-        let params = HierarchicalParams { mean_prior, ..with_prior.clone() };
+        let params = HierarchicalGaussianParams { mean_prior, ..with_prior.clone() };
         assert!(matches!(step(&groups, &params), GaussianError::Parameter { .. }));
     }
     let mean_prior = Some(MeanPrior { mean: DVector::from_element(D, f64::NAN), pseudo_groups: 1.0 });
-    let params = HierarchicalParams { mean_prior, ..with_prior };
+    let params = HierarchicalGaussianParams { mean_prior, ..with_prior };
     assert!(matches!(step(&groups, &params), GaussianError::NotFinite { .. }));
 }
 
 #[test]
 fn both_hyperpriors_speak_where_no_group_does() {
-    let params = HierarchicalParams {
+    let params = HierarchicalGaussianParams {
         covariance_prior: hyperprior(4.0),
         mean_prior: Some(MeanPrior { mean: DVector::from_element(D, 3.0), pseudo_groups: 1.0 }),
         ..Default::default()
     };
-    let fit = fit_hierarchical(&[GroupStatistics::new(D)], &params).unwrap();
+    let fit = fit_hierarchical(&[PooledGroupEstimate::new(D)], &params).unwrap();
     assert_eq!(fit.gaussian.mean(), &DVector::from_element(D, 3.0));
     // Ψ / (ν + d + 2): N(m, Σ/κ) adds one |Σ|^(-1/2).
     let (groups, mode) = (PSEUDO_GROUPS, 4.0);
@@ -193,8 +200,11 @@ fn both_hyperpriors_speak_where_no_group_does() {
 #[test]
 fn iteration_limit_error_carries_the_last_estimate() {
     let groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
-    let params =
-        HierarchicalParams { covariance_prior: hyperprior(4.0), max_iterations: 3, ..Default::default() };
+    let params = HierarchicalGaussianParams {
+        covariance_prior: hyperprior(4.0),
+        max_iterations: 3,
+        ..Default::default()
+    };
     match fit_hierarchical(&groups, &params) {
         Err(IterationError::NotConverged { last, iterations: 3, .. }) => {
             assert_eq!(last.iterations(), 3);

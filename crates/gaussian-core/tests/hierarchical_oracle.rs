@@ -5,14 +5,14 @@
 use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, dvector};
 use wayfix_gaussian_core::{
-    GroupStatistics, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
+    HierarchicalGaussianParams, InverseWishart, MeanPrior, PooledGroupEstimate, fit_hierarchical,
 };
 
 /// Seven groups of one to three observations of three coordinates, a quarter of them missing: the script's formula.
-fn groups() -> Vec<GroupStatistics> {
+fn groups() -> Vec<PooledGroupEstimate> {
     (0..7_usize)
         .map(|j| {
-            let mut group = GroupStatistics::new(3);
+            let mut group = PooledGroupEstimate::new(3);
             for i in 0..1 + j % 3 {
                 let (t, i_real) = (j as f64, i as f64);
                 let s = 0.7 * t + 1.3 * i_real;
@@ -42,8 +42,8 @@ fn inverse_wishart() -> InverseWishart {
 /// the differences between the three optima, 1e-3 and more.
 const AGREEMENT: f64 = 2e-6;
 
-fn assert_agrees(params: HierarchicalParams, objective: f64, mean: [f64; 3], covariance: [f64; 9]) {
-    let params = HierarchicalParams { tolerance: 1e-14, max_iterations: 100_000, ..params };
+fn assert_agrees(params: HierarchicalGaussianParams, objective: f64, mean: [f64; 3], covariance: [f64; 9]) {
+    let params = HierarchicalGaussianParams { tolerance: 1e-14, max_iterations: 100_000, ..params };
     let fit = fit_hierarchical(&groups(), &params).unwrap();
     let reached = fit.objective[fit.iterations()];
     // The objective is flat at the optimum: second order in the error of the arguments, so only rounding remains.
@@ -56,7 +56,7 @@ fn assert_agrees(params: HierarchicalParams, objective: f64, mean: [f64; 3], cov
 #[test]
 fn the_maximum_of_the_likelihood_alone() {
     assert_agrees(
-        HierarchicalParams::default(),
+        HierarchicalGaussianParams::default(),
         -15.484157363861927,
         [0.4274187141122651, -0.1424347652810935, 0.9420288456479619],
         [
@@ -76,7 +76,7 @@ fn the_maximum_of_the_likelihood_alone() {
 #[test]
 fn the_maximum_with_a_hyperprior_of_the_covariance() {
     assert_agrees(
-        HierarchicalParams { covariance_prior: Some(inverse_wishart()), ..Default::default() },
+        HierarchicalGaussianParams { covariance_prior: Some(inverse_wishart()), ..Default::default() },
         -14.913597390455095,
         [0.061847484514826495, -0.13087365891966807, 0.990421574128285],
         [
@@ -96,7 +96,7 @@ fn the_maximum_with_a_hyperprior_of_the_covariance() {
 #[test]
 fn the_maximum_with_both_hyperpriors() {
     assert_agrees(
-        HierarchicalParams {
+        HierarchicalGaussianParams {
             covariance_prior: Some(inverse_wishart()),
             mean_prior: Some(MeanPrior { mean: dvector![0.5, -0.5, 1.0], pseudo_groups: 0.1 }),
             ..Default::default()

@@ -1,8 +1,8 @@
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GaussianFilter, InformationForm, KalmanFilter, LinearMotion, LinearSensor,
-    SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, InformationFilterAlgorithm, KalmanAlgorithm, KalmanFilter,
+    LinearMotion, LinearSensor, SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 use crate::harness::measure;
@@ -13,10 +13,10 @@ pub(crate) fn run() {
     fixed::<30, 30>("kalman 30/30", 300);
     dynamic(4, 2, "kalman 4/2 dynamic", 10_000);
     dynamic(30, 30, "kalman 30/30 dynamic", 300);
-    form("kalman 4/2", "wayfix extended", ExtendedForm);
-    form("kalman 4/2", "wayfix square-root", SquareRootForm);
-    form("kalman 4/2", "wayfix information", InformationForm);
-    form("kalman 4/2", "wayfix unscented", UnscentedForm::default());
+    form("kalman 4/2", "wayfix extended", ExtendedKalmanAlgorithm);
+    form("kalman 4/2", "wayfix square-root", SquareRootKalmanAlgorithm);
+    form("kalman 4/2", "wayfix information", InformationFilterAlgorithm);
+    form("kalman 4/2", "wayfix unscented", UnscentedKalmanAlgorithm::default());
 }
 
 /// The first half of the state moves with the second; the first entries are seen.
@@ -69,7 +69,7 @@ fn dynamic(n: usize, m: usize, job: &str, calls: u32) {
     });
 }
 
-fn form<F: FilterForm<SVector<f64, 4>>>(job: &str, program: &str, form: F) {
+fn form<F: KalmanAlgorithm<SVector<f64, 4>>>(job: &str, program: &str, form: F) {
     let f = SMatrix::<f64, 4, 4>::from_column_slice(transition(4).as_slice());
     let motion = LinearMotion::new(f, SMatrix::identity() * 1e-3).expect("a valid motion");
     let sensor = LinearSensor::new(SMatrix::<f64, 2, 4>::identity(), SMatrix::<f64, 2, 2>::identity() * 0.1)

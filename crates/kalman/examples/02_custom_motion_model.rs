@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GaussianFilter, IteratedExtendedForm, KalmanError, SquareRootForm,
-    UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, IteratedExtendedKalmanAlgorithm, KalmanAlgorithm, KalmanError,
+    SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 /// Rolls without slip; the wheelbase is in metres.
@@ -54,7 +54,7 @@ impl SensorModel for Lighthouse {
     }
 }
 
-fn ride_along<F: FilterForm<Pose2<f64>>>(name: &str, form: F) -> Result<(), KalmanError> {
+fn ride_along<F: KalmanAlgorithm<Pose2<f64>>>(name: &str, form: F) -> Result<(), KalmanError> {
     let bicycle = Bicycle { wheelbase: 1.1 };
     let lighthouses = [Lighthouse(Vector2::new(8.0, 6.0)), Lighthouse(Vector2::new(-5.0, 9.0))];
     let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(1.0, 1.0, 0.5))?;
@@ -74,8 +74,8 @@ fn ride_along<F: FilterForm<Pose2<f64>>>(name: &str, form: F) -> Result<(), Kalm
 }
 
 fn main() -> Result<(), KalmanError> {
-    ride_along("extended", ExtendedForm)?;
-    ride_along("iterated", IteratedExtendedForm::default())?;
-    ride_along("unscented", UnscentedForm::default())?;
-    ride_along("square root", SquareRootForm)
+    ride_along("extended", ExtendedKalmanAlgorithm)?;
+    ride_along("iterated", IteratedExtendedKalmanAlgorithm::default())?;
+    ride_along("unscented", UnscentedKalmanAlgorithm::default())?;
+    ride_along("square root", SquareRootKalmanAlgorithm)
 }

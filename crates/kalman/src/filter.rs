@@ -2,9 +2,9 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
-use crate::{ExtendedForm, FilterForm, GatedUpdate, Innovation, KalmanError};
+use crate::{ExtendedKalmanAlgorithm, GatedUpdate, Innovation, KalmanAlgorithm, KalmanError};
 
-/// A Gaussian filter: a motion model, a [`FilterForm`] and the present belief.
+/// A Gaussian filter: a motion model, a [`KalmanAlgorithm`] and the present belief.
 ///
 /// The sensor is passed with each measurement, so one filter supports several sensors.
 ///
@@ -47,7 +47,7 @@ use crate::{ExtendedForm, FilterForm, GatedUpdate, Innovation, KalmanError};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct GaussianFilter<M: MotionModel, F: FilterForm<M::State>>
+pub struct GaussianFilter<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -56,10 +56,10 @@ where
     belief: F::Belief,
 }
 
-/// [`GaussianFilter`] in [`ExtendedForm`] form.
-pub type ExtendedKalmanFilter<M> = GaussianFilter<M, ExtendedForm>;
+/// [`GaussianFilter`] in [`ExtendedKalmanAlgorithm`] form.
+pub type ExtendedKalmanFilter<M> = GaussianFilter<M, ExtendedKalmanAlgorithm>;
 
-impl<M: MotionModel, F: FilterForm<M::State>> GaussianFilter<M, F>
+impl<M: MotionModel, F: KalmanAlgorithm<M::State>> GaussianFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

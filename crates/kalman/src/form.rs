@@ -13,7 +13,7 @@ use crate::{Innovation, error::Checked};
 /// 1. on linear Gaussian models every form gives the same Gaussian, up to rounding,
 /// 2. a returned belief is symmetric positive definite; otherwise an error is returned,
 /// 3. `update` calls `admits` with the innovation first and returns no belief if it returns `false`.
-pub trait FilterForm<X: Manifold>
+pub trait KalmanAlgorithm<X: Manifold>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

@@ -106,7 +106,7 @@ where
         to_f64(self.whitened().norm_squared())
     }
 
-    /// $`\ln N(y; 0, S)`$, nats.
+    /// $`\ln N(y; 0, S)`$, nats. [Andrade-Cetto 2005, Eq. 11]
     pub fn log_likelihood(&self) -> LogWeight {
         let log_determinant: f64 = (0..self.dim()).map(|k| -to_f64(self.ldl.inverse_pivot(k)).ln()).sum();
         -0.5 * (self.nis() + self.dim() as f64 * std::f64::consts::TAU.ln() + log_determinant)

@@ -3,9 +3,10 @@
 //! | You have | Take |
 //! | --- | --- |
 //! | matrices | [`KalmanFilter`] with [`LinearMotion`] and [`LinearSensor`] |
-//! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`FilterForm`]: [`ExtendedForm`], [`IteratedExtendedForm`], [`UnscentedForm`] |
-//! | sharp sensors, vague priors or single precision | the form [`SquareRootForm`] |
-//! | large measurements with little state, or small with much | the forms [`InformationForm`], [`SequentialForm`] |
+//! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`KalmanAlgorithm`]: [`ExtendedKalmanAlgorithm`], [`IteratedExtendedKalmanAlgorithm`], [`UnscentedKalmanAlgorithm`] |
+//! | components of the state seen alone, with independent noise | [`update_component`] |
+//! | sharp sensors, vague priors or single precision | the form [`SquareRootKalmanAlgorithm`] |
+//! | large measurements with little state, or small with much | the forms [`InformationFilterAlgorithm`], [`SequentialUpdateAlgorithm`] |
 //! | several measurements at once | [`StackedSensor`] sensors: the batch update |
 //! | a whole recording | [`RtsSmoother`] |
 //! | a target with several motion models | [`ImmFilter`], [`Gpb2Filter`] |
@@ -49,17 +50,21 @@ mod update;
 pub use consistency::{ConsistencyStatistics, nees};
 pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
-pub use form::FilterForm;
+pub use form::KalmanAlgorithm;
 pub use forms::{
-    ExtendedForm, FactoredGaussian, InformationBelief, InformationForm, IteratedExtendedForm, SequentialForm,
-    SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, FactoredGaussian, InformationBelief, InformationFilterAlgorithm,
+    IteratedExtendedKalmanAlgorithm, SequentialUpdateAlgorithm, SquareRootKalmanAlgorithm,
+    UnscentedKalmanAlgorithm,
 };
 pub use innovation::Innovation;
-pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};
+pub use linear::{
+    KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate, update_component,
+};
 pub use smoother::RtsSmoother;
 pub use stacked::{StackedMeasurement, StackedSensor};
 pub use switching::{
-    FilterBank, Gpb2Filter, ImmFilter, JumpMarkovFilter, JumpMarkovFilterParams, MarkovChain, ModelUpdate,
+    FilterBank, FilterBankUpdate, Gpb2Filter, ImmFilter, JumpMarkovFilter, JumpMarkovFilterParams,
+    MarkovChain,
 };
 pub use update::GatedUpdate;
 

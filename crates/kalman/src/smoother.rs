@@ -3,11 +3,12 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    ExtendedForm, FilterForm, Innovation, KalmanError, algebra::product::propagated_covariance,
-    algebra::transport::gaussian_at, check, error::Checked, linearize::linearize_motion,
+    ExtendedKalmanAlgorithm, Innovation, KalmanAlgorithm, KalmanError,
+    algebra::product::propagated_covariance, algebra::transport::gaussian_at, check, error::Checked,
+    linearize::linearize_motion,
 };
 
-/// The Rauch-Tung-Striebel smoother: a forward pass in [`ExtendedForm`] form, then a backward pass with the later measurements.
+/// The Rauch-Tung-Striebel smoother: a forward pass in [`ExtendedKalmanAlgorithm`] form, then a backward pass with the later measurements.
 ///
 /// $`G = P F^T P_-^{-1},\; x^s = x ⊞ G (x^s_+ ⊟ x_-),\; P^s = (I - GF) P (I - GF)^T + G (Q + P^s_+) G^T`$; the last is the form of Joseph
 /// of the textbook's $`P + G (P^s_+ - P_-) G^T`$ and subtracts nothing. [Särkkä 2013, Eq. 8.6]
@@ -57,7 +58,7 @@ where
     /// # Errors
     /// Returns an error if the prior's covariance is not positive definite beyond rounding.
     pub fn new(prior: Gaussian<X>) -> Result<Self, KalmanError> {
-        Ok(Self { transitions: Vec::new(), current: ExtendedForm.belief_from(&prior)? })
+        Ok(Self { transitions: Vec::new(), current: ExtendedKalmanAlgorithm.belief_from(&prior)? })
     }
 
     /// The filtered estimate of the last state.
@@ -100,7 +101,8 @@ where
         S: SensorModel<State = X>,
         DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
     {
-        let (innovation, posterior) = ExtendedForm.update(&self.current, sensor, measurement, |_| true)?;
+        let (innovation, posterior) =
+            ExtendedKalmanAlgorithm.update(&self.current, sensor, measurement, |_| true)?;
         if let Some(posterior) = posterior {
             self.current = posterior;
         }
@@ -126,7 +128,7 @@ where
     /// # Errors
     /// Returns an error if the covariance is not positive definite beyond rounding; the smoother is then unchanged.
     pub fn set_filtered(&mut self, filtered: Gaussian<X>) -> Result<(), KalmanError> {
-        self.current = ExtendedForm.belief_from(&filtered)?;
+        self.current = ExtendedKalmanAlgorithm.belief_from(&filtered)?;
         Ok(())
     }
 

@@ -8,8 +8,9 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x4, Vector2, Vector4};
 use wayfix_estimation_traits::Manifold;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, KalmanFilter,
-    LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, InformationFilterAlgorithm, IteratedExtendedKalmanAlgorithm,
+    KalmanAlgorithm, KalmanFilter, LinearMotion, LinearSensor, SequentialUpdateAlgorithm,
+    SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 const STEPS: usize = 200;
@@ -43,7 +44,7 @@ fn reference() -> (Vec<Gaussian<Vector4<f64>>>, Vec<f64>) {
 /// largest intermediate.
 const ROUNDING: f64 = 1e-12;
 
-fn agrees<F: FilterForm<Vector4<f64>>>(form: F) {
+fn agrees<F: KalmanAlgorithm<Vector4<f64>>>(form: F) {
     let (expected, likelihoods) = reference();
     let mut likelihoods = likelihoods.into_iter();
     let mut filter = GaussianFilter::new(constant_velocity(0.5), form, track_prior(10.0)).unwrap();
@@ -72,29 +73,29 @@ fn agrees<F: FilterForm<Vector4<f64>>>(form: F) {
 
 #[test]
 fn the_extended_form_is_the_kalman_filter() {
-    agrees(ExtendedForm);
+    agrees(ExtendedKalmanAlgorithm);
 }
 #[test]
 fn the_plain_form_is_the_kalman_filter() {}
 #[test]
 fn the_iterated_form_is_the_kalman_filter() {
-    agrees(IteratedExtendedForm::default());
+    agrees(IteratedExtendedKalmanAlgorithm::default());
 }
 #[test]
 fn the_sequential_form_is_the_kalman_filter() {
-    agrees(SequentialForm);
+    agrees(SequentialUpdateAlgorithm);
 }
 #[test]
 fn the_square_root_form_is_the_kalman_filter() {
-    agrees(SquareRootForm);
+    agrees(SquareRootKalmanAlgorithm);
 }
 #[test]
 fn the_information_form_is_the_kalman_filter() {
-    agrees(InformationForm);
+    agrees(InformationFilterAlgorithm);
 }
 #[test]
 fn the_unscented_form_is_the_kalman_filter() {
-    agrees(UnscentedForm::default());
+    agrees(UnscentedKalmanAlgorithm::default());
 }
 
 #[test]

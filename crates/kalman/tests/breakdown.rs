@@ -9,8 +9,9 @@ mod common;
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, RealField, Vector2, Vector4};
 use wayfix_gaussian_core::{Gaussian, GaussianError};
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, KalmanError,
-    KalmanFilter, LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, InformationFilterAlgorithm, IteratedExtendedKalmanAlgorithm,
+    KalmanAlgorithm, KalmanError, KalmanFilter, LinearMotion, LinearSensor, SequentialUpdateAlgorithm,
+    SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 const STEPS: usize = 2000;
@@ -43,7 +44,7 @@ impl Tally {
     }
 }
 
-fn run<T: RealField + Copy, F: FilterForm<Vector4<T>>>(form: F) -> Tally {
+fn run<T: RealField + Copy, F: KalmanAlgorithm<Vector4<T>>>(form: F) -> Tally {
     let (motion, sensor, prior) = problem::<T>();
     let mut filter = GaussianFilter::new(motion, form, prior).unwrap();
     let mut tally = Tally::default();
@@ -66,7 +67,9 @@ fn run<T: RealField + Copy, F: FilterForm<Vector4<T>>>(form: F) -> Tally {
     tally
 }
 
-fn both_precisions<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy>(form: F) -> [Tally; 2] {
+fn both_precisions<F: KalmanAlgorithm<Vector4<f64>> + KalmanAlgorithm<Vector4<f32>> + Copy>(
+    form: F,
+) -> [Tally; 2] {
     let tallies = [run::<f64, F>(form), run::<f32, F>(form)];
     for tally in &tallies {
         assert_eq!(tally.passed + tally.refused, 2 * STEPS);
@@ -75,7 +78,7 @@ fn both_precisions<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy
 }
 
 /// Sensors keep correcting: all 2000 updates pass, whatever becomes of predictions that are singular to rounding.
-fn keeps_updating<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy>(form: F) {
+fn keeps_updating<F: KalmanAlgorithm<Vector4<f64>> + KalmanAlgorithm<Vector4<f32>> + Copy>(form: F) {
     for tally in both_precisions(form) {
         assert!(tally.passed > STEPS, "{tally:?}");
     }
@@ -84,15 +87,15 @@ fn keeps_updating<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy>
 #[test]
 fn the_square_root_form_never_refuses() {
     let all = Tally { passed: 2 * STEPS, refused: 0 };
-    assert_eq!(run::<f64, _>(SquareRootForm), all);
-    assert_eq!(run::<f32, _>(SquareRootForm), all);
+    assert_eq!(run::<f64, _>(SquareRootKalmanAlgorithm), all);
+    assert_eq!(run::<f32, _>(SquareRootKalmanAlgorithm), all);
 }
 
 /// Position and velocity from k+1 exact-noise positions: regression gives Var(v) = R / (dt² Σ (i - mean)²), less what the prior adds.
 #[test]
 fn the_square_root_form_is_not_only_positive_but_right() {
     let (motion, sensor, prior) = problem::<f32>();
-    let mut filter = GaussianFilter::new(motion, SquareRootForm, prior).unwrap();
+    let mut filter = GaussianFilter::new(motion, SquareRootKalmanAlgorithm, prior).unwrap();
     for _ in 0..STEPS {
         filter.predict(&None).unwrap();
         filter.update(&sensor, &Vector2::zeros()).unwrap();
@@ -106,11 +109,11 @@ fn the_square_root_form_is_not_only_positive_but_right() {
 
 #[test]
 fn the_other_forms_refuse_or_stay_positive() {
-    keeps_updating(ExtendedForm);
-    keeps_updating(IteratedExtendedForm::default());
-    keeps_updating(SequentialForm);
-    keeps_updating(InformationForm);
-    keeps_updating(UnscentedForm::default());
+    keeps_updating(ExtendedKalmanAlgorithm);
+    keeps_updating(IteratedExtendedKalmanAlgorithm::default());
+    keeps_updating(SequentialUpdateAlgorithm);
+    keeps_updating(InformationFilterAlgorithm);
+    keeps_updating(UnscentedKalmanAlgorithm::default());
 }
 
 #[test]

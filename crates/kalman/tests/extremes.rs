@@ -7,7 +7,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::SensorModel;
 use wayfix_gaussian_core::Gaussian;
-use wayfix_kalman::{ExtendedForm, GaussianFilter, Innovation, KalmanFilter, LinearMotion, LinearSensor};
+use wayfix_kalman::{
+    ExtendedKalmanAlgorithm, GaussianFilter, Innovation, KalmanFilter, LinearMotion, LinearSensor,
+};
 
 /// Within the tolerance of `check_covariance`, the root of ε (1.49e-8) of the variances.
 const LOPSIDED: f64 = 1.4e-8;
@@ -75,7 +77,7 @@ fn a_lopsided_sensor_noise_leaves_the_belief_positive_definite() {
         linear.predict(None).unwrap();
         linear.update(&sensor, &Vector2::zeros()).unwrap();
         assert!(linear.estimate().covariance().cholesky().is_some(), "linear, case {case}");
-        let mut extended = GaussianFilter::new(motion, ExtendedForm, prior).unwrap();
+        let mut extended = GaussianFilter::new(motion, ExtendedKalmanAlgorithm, prior).unwrap();
         extended.predict(&None).unwrap();
         extended.update(&Unchecked(sensed, noise), &Vector2::zeros()).unwrap();
     }

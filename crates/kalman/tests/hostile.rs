@@ -10,8 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, SensorModel};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FactoredGaussian, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm,
-    KalmanFilter, LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, FactoredGaussian, GaussianFilter, InformationFilterAlgorithm,
+    IteratedExtendedKalmanAlgorithm, KalmanAlgorithm, KalmanFilter, LinearMotion, LinearSensor,
+    SequentialUpdateAlgorithm, SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 /// Eight filters take turns: a million steps together.
@@ -111,7 +112,7 @@ fn is_a_factor(belief: &FactoredGaussian<Vector4<f64>>, covariance: &Matrix4<f64
 }
 
 /// Ill-treats a filter; returns how many calls it refused.
-fn ill_treat<F: FilterForm<Vector4<f64>> + Copy>(
+fn ill_treat<F: KalmanAlgorithm<Vector4<f64>> + Copy>(
     form: F,
     seed: u64,
     is_positive_definite: impl Fn(&F::Belief, &Matrix4<f64>) -> bool,
@@ -148,12 +149,12 @@ fn ill_treat<F: FilterForm<Vector4<f64>> + Copy>(
 #[test]
 fn ill_treated_filters_stay_positive_definite() {
     let refused = [
-        ill_treat(ExtendedForm, 1, is_factorable),
-        ill_treat(IteratedExtendedForm::default(), 3, is_factorable),
-        ill_treat(SequentialForm, 4, is_factorable),
-        ill_treat(SquareRootForm, 5, is_a_factor),
-        ill_treat(InformationForm, 6, is_factorable),
-        ill_treat(UnscentedForm::default(), 7, is_factorable),
+        ill_treat(ExtendedKalmanAlgorithm, 1, is_factorable),
+        ill_treat(IteratedExtendedKalmanAlgorithm::default(), 3, is_factorable),
+        ill_treat(SequentialUpdateAlgorithm, 4, is_factorable),
+        ill_treat(SquareRootKalmanAlgorithm, 5, is_a_factor),
+        ill_treat(InformationFilterAlgorithm, 6, is_factorable),
+        ill_treat(UnscentedKalmanAlgorithm::default(), 7, is_factorable),
     ];
     // Covariances are bad in at least 5 draws of 20 (cases 0, 1, 2, 4 half the time, 5), and most calls must get through.
     for refused in refused {
@@ -202,7 +203,7 @@ fn dynamic_linear_filter_stays_positive_definite() {
 
 #[test]
 fn wrong_sizes_are_refused_by_every_form() {
-    fn refuses<F: FilterForm<DVector<f64>>>(form: F) {
+    fn refuses<F: KalmanAlgorithm<DVector<f64>>>(form: F) {
         let motion = LinearMotion::new(DMatrix::identity(3, 3), DMatrix::identity(3, 3)).unwrap();
         let prior = Gaussian::new(DVector::zeros(3), DMatrix::identity(3, 3)).unwrap();
         let mut filter = GaussianFilter::new(motion, form, prior).unwrap();
@@ -216,10 +217,10 @@ fn wrong_sizes_are_refused_by_every_form() {
         assert_eq!(filter.estimate(), before);
         assert!(filter.update(&sensor, &DVector::zeros(2)).is_ok());
     }
-    refuses(ExtendedForm);
-    refuses(IteratedExtendedForm::default());
-    refuses(SequentialForm);
-    refuses(SquareRootForm);
-    refuses(InformationForm);
-    refuses(UnscentedForm::default());
+    refuses(ExtendedKalmanAlgorithm);
+    refuses(IteratedExtendedKalmanAlgorithm::default());
+    refuses(SequentialUpdateAlgorithm);
+    refuses(SquareRootKalmanAlgorithm);
+    refuses(InformationFilterAlgorithm);
+    refuses(UnscentedKalmanAlgorithm::default());
 }

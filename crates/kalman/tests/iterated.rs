@@ -6,8 +6,8 @@ use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GatedUpdate, GaussianFilter, IteratedExtendedForm, KalmanError, SquareRootForm,
-    UnscentedForm,
+    ExtendedKalmanAlgorithm, GatedUpdate, GaussianFilter, IteratedExtendedKalmanAlgorithm, KalmanAlgorithm,
+    KalmanError, SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 struct Still;
@@ -51,7 +51,7 @@ fn cost(pose: &Pose2<f64>, sensor: &Bearing, z: &Angle<f64>) -> f64 {
 fn the_result_is_a_minimum_of_the_cost() {
     let sensor = Bearing(Vector2::new(-1.5, 0.8));
     let z = Angle::new(0.4);
-    let mut filter = GaussianFilter::new(Still, IteratedExtendedForm::default(), prior()).unwrap();
+    let mut filter = GaussianFilter::new(Still, IteratedExtendedKalmanAlgorithm::default(), prior()).unwrap();
     filter.update(&sensor, &z).unwrap();
     let best = *filter.estimate().mean();
     let lowest = cost(&best, &sensor, &z);
@@ -63,7 +63,7 @@ fn the_result_is_a_minimum_of_the_cost() {
             assert!(cost(&best.retract(&step), &sensor, &z) > lowest, "downhill along axis {axis}");
         }
     }
-    let mut once = GaussianFilter::new(Still, ExtendedForm, prior()).unwrap();
+    let mut once = GaussianFilter::new(Still, ExtendedKalmanAlgorithm, prior()).unwrap();
     once.update(&sensor, &z).unwrap();
     assert!(cost(once.estimate().mean(), &sensor, &z) > lowest);
 }
@@ -88,7 +88,7 @@ impl SensorModel for ArcTangent {
 fn no_convergence_returns_last_estimate_and_keeps_the_filter() {
     let motion = wayfix_kalman::LinearMotion::stationary(Matrix1::new(0.0)).unwrap();
     let prior = Gaussian::new(Vector1::new(2.0), Matrix1::new(100.0)).unwrap();
-    let hasty = IteratedExtendedForm { max_iterations: 2, ..Default::default() };
+    let hasty = IteratedExtendedKalmanAlgorithm { max_iterations: 2, ..Default::default() };
     let mut filter = GaussianFilter::new(motion, hasty, prior.clone()).unwrap();
     match filter.update(&ArcTangent, &Vector1::new(0.0)) {
         Err(KalmanError::NotConverged { iterations, last_step, last_offset }) => {
@@ -106,7 +106,7 @@ fn no_convergence_returns_last_estimate_and_keeps_the_filter() {
 
 #[test]
 fn a_gate_rejects_visibly_in_every_form() {
-    fn rejects<F: FilterForm<Pose2<f64>>>(form: F) {
+    fn rejects<F: KalmanAlgorithm<Pose2<f64>>>(form: F) {
         let gate = ChiSquaredGate::from_probability(1, 0.99).unwrap();
         let sensor = Bearing(Vector2::new(-9.5, 0.8));
         let mut filter = GaussianFilter::new(Still, form, prior()).unwrap();
@@ -124,10 +124,10 @@ fn a_gate_rejects_visibly_in_every_form() {
             filter.update_gated(&sensor, Some(&sensor.expected(before.mean())), &gate).unwrap().is_accepted()
         );
     }
-    rejects(ExtendedForm);
-    rejects(IteratedExtendedForm::default());
-    rejects(UnscentedForm::default());
-    rejects(SquareRootForm);
+    rejects(ExtendedKalmanAlgorithm);
+    rejects(IteratedExtendedKalmanAlgorithm::default());
+    rejects(UnscentedKalmanAlgorithm::default());
+    rejects(SquareRootKalmanAlgorithm);
 }
 
 /// Turning the body frame turns the covariance with it: seen from the world, a heading correction must not move position uncertainty.
@@ -148,7 +148,7 @@ fn a_corrected_heading_carries_the_covariance_along() {
         let turn = gaussian.mean().rotation_matrix();
         turn * gaussian.covariance().fixed_view::<2, 2>(0, 0) * turn.transpose()
     }
-    fn keeps<F: FilterForm<Pose2<f64>>>(form: F) {
+    fn keeps<F: KalmanAlgorithm<Pose2<f64>>>(form: F) {
         let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(1.0, 0.1, 0.5)).unwrap();
         let before = world(&prior);
         let mut filter = GaussianFilter::new(Still, form, prior).unwrap();
@@ -156,10 +156,10 @@ fn a_corrected_heading_carries_the_covariance_along() {
         // Position and heading are independent here, so the world sees no change but rounding and numerical differencing (1e-9).
         assert!((world(&filter.estimate()) - before).norm() < 1e-8, "{}", world(&filter.estimate()));
     }
-    keeps(ExtendedForm);
-    keeps(IteratedExtendedForm::default());
-    keeps(SquareRootForm);
-    keeps(UnscentedForm::default());
-    keeps(wayfix_kalman::InformationForm);
-    keeps(wayfix_kalman::SequentialForm);
+    keeps(ExtendedKalmanAlgorithm);
+    keeps(IteratedExtendedKalmanAlgorithm::default());
+    keeps(SquareRootKalmanAlgorithm);
+    keeps(UnscentedKalmanAlgorithm::default());
+    keeps(wayfix_kalman::InformationFilterAlgorithm);
+    keeps(wayfix_kalman::SequentialUpdateAlgorithm);
 }

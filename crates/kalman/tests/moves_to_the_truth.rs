@@ -5,8 +5,9 @@ use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel, laws, numerical_jacobian};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, SequentialForm,
-    SquareRootForm, StackedMeasurement, StackedSensor, UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, InformationFilterAlgorithm, IteratedExtendedKalmanAlgorithm,
+    KalmanAlgorithm, SequentialUpdateAlgorithm, SquareRootKalmanAlgorithm, StackedMeasurement, StackedSensor,
+    UnscentedKalmanAlgorithm,
 };
 
 /// Body-frame increments.
@@ -66,7 +67,7 @@ fn prior() -> Gaussian<Pose2<f64>> {
     Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 2.9), &Vector3::new(0.3, 0.3, 0.2)).unwrap()
 }
 
-fn moves<F: FilterForm<Pose2<f64>>>(form: F) {
+fn moves<F: KalmanAlgorithm<Pose2<f64>>>(form: F) {
     let mut truth = Pose2::new(0.3, -0.2, 3.1);
     let before = prior().mean().local(&truth).norm();
     let mut filter = GaussianFilter::new(Odometry, form, prior()).unwrap();
@@ -85,16 +86,16 @@ fn moves<F: FilterForm<Pose2<f64>>>(form: F) {
 
 #[test]
 fn every_form_moves_to_the_truth() {
-    moves(ExtendedForm);
-    moves(IteratedExtendedForm::default());
-    moves(SequentialForm);
-    moves(SquareRootForm);
-    moves(InformationForm);
-    moves(UnscentedForm::default());
+    moves(ExtendedKalmanAlgorithm);
+    moves(IteratedExtendedKalmanAlgorithm::default());
+    moves(SequentialUpdateAlgorithm);
+    moves(SquareRootKalmanAlgorithm);
+    moves(InformationFilterAlgorithm);
+    moves(UnscentedKalmanAlgorithm::default());
 }
 
 /// The law suite: the bearings of one pose twenty times, and calls that a filter refuses.
-fn obeys<F: FilterForm<Pose2<f64>> + Clone>(form: F) {
+fn obeys<F: KalmanAlgorithm<Pose2<f64>> + Clone>(form: F) {
     type Filter<F> = GaussianFilter<Odometry, F>;
     let truth = Pose2::new(0.3, -0.2, 3.1);
     let sees = |angles: Vec<Angle<f64>>| {
@@ -119,12 +120,12 @@ fn obeys<F: FilterForm<Pose2<f64>> + Clone>(form: F) {
 
 #[test]
 fn every_form_obeys_the_laws_of_filters() {
-    obeys(ExtendedForm);
-    obeys(IteratedExtendedForm::default());
-    obeys(SequentialForm);
-    obeys(SquareRootForm);
-    obeys(InformationForm);
-    obeys(UnscentedForm::default());
+    obeys(ExtendedKalmanAlgorithm);
+    obeys(IteratedExtendedKalmanAlgorithm::default());
+    obeys(SequentialUpdateAlgorithm);
+    obeys(SquareRootKalmanAlgorithm);
+    obeys(InformationFilterAlgorithm);
+    obeys(UnscentedKalmanAlgorithm::default());
 }
 
 #[test]

@@ -9,8 +9,8 @@ use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{Manifold, SensorModel};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, GaussianFilter, ImmFilter, KalmanFilter, LinearMotion, LinearSensor, MarkovChain,
-    UnscentedForm,
+    ExtendedKalmanAlgorithm, GaussianFilter, ImmFilter, KalmanFilter, LinearMotion, LinearSensor,
+    MarkovChain, UnscentedKalmanAlgorithm,
 };
 
 fn measurement(k: usize) -> Vector2<f64> {
@@ -83,7 +83,7 @@ fn the_imm_gives_filterpys_figures() {
     const PROBABILITIES: [f64; 2] = [0.4641694228121355, 0.5358305771878646];
     let chain = MarkovChain::new(&[vec![0.95, 0.05], vec![0.1, 0.9]], &[0.5, 0.5]).unwrap();
     let models = vec![constant_velocity(0.01), constant_velocity(20.0)];
-    let mut filter = ImmFilter::new(models, chain, ExtendedForm, &track_prior(10.0)).unwrap();
+    let mut filter = ImmFilter::new(models, chain, ExtendedKalmanAlgorithm, &track_prior(10.0)).unwrap();
     for k in 1..=20 {
         filter.predict(&None).unwrap();
         filter.update(&sensor(), &measurement(k)).unwrap();
@@ -115,7 +115,7 @@ fn the_unscented_filter_gives_filterpys_figures() {
         [0.008223339116055942, -0.0010836214337463827, -0.001083621433746381, 0.007517872740327376];
     let motion = LinearMotion::stationary(Matrix2::from_diagonal(&Vector2::new(0.02, 0.01))).unwrap();
     let prior = Gaussian::new(Vector2::zeros(), Matrix2::from_diagonal(&Vector2::new(0.3, 0.2))).unwrap();
-    let mut filter = GaussianFilter::new(motion, UnscentedForm::default(), prior).unwrap();
+    let mut filter = GaussianFilter::new(motion, UnscentedKalmanAlgorithm::default(), prior).unwrap();
     for k in 1..=10 {
         filter.predict(&None).unwrap();
         let k = f64::from(k);

@@ -12,9 +12,9 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, SensorModel, StateAlloc};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    ExtendedForm, FilterBank, FilterForm, Gpb2Filter, ImmFilter, InformationForm, IteratedExtendedForm,
-    JumpMarkovFilter, JumpMarkovFilterParams, KalmanFilter, LinearMotion, LinearSensor, MarkovChain,
-    SquareRootForm, UnscentedForm,
+    ExtendedKalmanAlgorithm, FilterBank, Gpb2Filter, ImmFilter, InformationFilterAlgorithm,
+    IteratedExtendedKalmanAlgorithm, JumpMarkovFilter, JumpMarkovFilterParams, KalmanAlgorithm, KalmanFilter,
+    LinearMotion, LinearSensor, MarkovChain, SquareRootKalmanAlgorithm, UnscentedKalmanAlgorithm,
 };
 
 const SEEDS: std::ops::Range<u64> = 700..740;
@@ -91,7 +91,7 @@ fn single(scene: &Scene, q: f64) -> f64 {
     outcome.squared_error
 }
 
-fn imm<F: FilterForm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
+fn imm<F: KalmanAlgorithm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
     let mut filter = ImmFilter::new(models(), chain(), form, &track_prior(4.0)).unwrap();
     judge(scene, |z| {
         filter.predict(&None).unwrap();
@@ -100,7 +100,7 @@ fn imm<F: FilterForm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
     })
 }
 
-fn gpb2<F: FilterForm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
+fn gpb2<F: KalmanAlgorithm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
     let mut filter = Gpb2Filter::new(models(), chain(), form, &track_prior(4.0)).unwrap();
     judge(scene, |z| {
         filter.predict(&None).unwrap();
@@ -138,17 +138,17 @@ fn beats_either_alone(name: &str, switching: impl Fn(&Scene) -> Outcome) {
 
 #[test]
 fn the_imm_follows_the_switches_in_every_form() {
-    beats_either_alone("IMM extended", |scene| imm(scene, ExtendedForm));
-    beats_either_alone("IMM unscented", |scene| imm(scene, UnscentedForm::default()));
-    beats_either_alone("IMM square root", |scene| imm(scene, SquareRootForm));
-    beats_either_alone("IMM information", |scene| imm(scene, InformationForm));
+    beats_either_alone("IMM extended", |scene| imm(scene, ExtendedKalmanAlgorithm));
+    beats_either_alone("IMM unscented", |scene| imm(scene, UnscentedKalmanAlgorithm::default()));
+    beats_either_alone("IMM square root", |scene| imm(scene, SquareRootKalmanAlgorithm));
+    beats_either_alone("IMM information", |scene| imm(scene, InformationFilterAlgorithm));
 }
 
 #[test]
 fn gpb2_follows_the_switches_in_every_form() {
-    beats_either_alone("GPB2 extended", |scene| gpb2(scene, ExtendedForm));
-    beats_either_alone("GPB2 iterated", |scene| gpb2(scene, IteratedExtendedForm::default()));
-    beats_either_alone("GPB2 square root", |scene| gpb2(scene, SquareRootForm));
+    beats_either_alone("GPB2 extended", |scene| gpb2(scene, ExtendedKalmanAlgorithm));
+    beats_either_alone("GPB2 iterated", |scene| gpb2(scene, IteratedExtendedKalmanAlgorithm::default()));
+    beats_either_alone("GPB2 square root", |scene| gpb2(scene, SquareRootKalmanAlgorithm));
 }
 
 #[test]
@@ -157,9 +157,11 @@ fn with_one_model_both_are_the_kalman_filter() {
     let one = || MarkovChain::sticky(1, 1.0).unwrap();
     let mut plain = KalmanFilter::new(constant_velocity(1.0), track_prior(4.0)).unwrap();
     let mut imm =
-        ImmFilter::new(vec![constant_velocity(1.0)], one(), ExtendedForm, &track_prior(4.0)).unwrap();
+        ImmFilter::new(vec![constant_velocity(1.0)], one(), ExtendedKalmanAlgorithm, &track_prior(4.0))
+            .unwrap();
     let mut gpb2 =
-        Gpb2Filter::new(vec![constant_velocity(1.0)], one(), ExtendedForm, &track_prior(4.0)).unwrap();
+        Gpb2Filter::new(vec![constant_velocity(1.0)], one(), ExtendedKalmanAlgorithm, &track_prior(4.0))
+            .unwrap();
     for z in &scene.measurements {
         plain.predict(None).unwrap();
         imm.predict(&None).unwrap();
@@ -180,7 +182,8 @@ fn with_one_model_both_are_the_kalman_filter() {
 fn gpb2_is_exact_over_two_steps() {
     let (chain, measurements) =
         (MarkovChain::sticky(2, 0.9).unwrap(), [Vector2::new(0.4, -0.1), Vector2::new(1.5, 0.8)]);
-    let mut filter = Gpb2Filter::new(models(), chain.clone(), ExtendedForm, &track_prior(4.0)).unwrap();
+    let mut filter =
+        Gpb2Filter::new(models(), chain.clone(), ExtendedKalmanAlgorithm, &track_prior(4.0)).unwrap();
     for z in &measurements {
         filter.predict(&None).unwrap();
         filter.update(&sensor(), z).unwrap();
@@ -242,7 +245,7 @@ impl SensorModel for Fix {
 
 #[test]
 fn poses_switch_too_and_their_headings_wrap() {
-    fn run<F: FilterForm<Pose2<f64>>>(form: F) -> (Gaussian<Pose2<f64>>, Vec<f64>, Pose2<f64>)
+    fn run<F: KalmanAlgorithm<Pose2<f64>>>(form: F) -> (Gaussian<Pose2<f64>>, Vec<f64>, Pose2<f64>)
     where
         DefaultAllocator: StateAlloc<nalgebra::U3>,
     {
@@ -262,9 +265,11 @@ fn poses_switch_too_and_their_headings_wrap() {
         }
         (filter.estimate().unwrap(), filter.model_probabilities(), truth)
     }
-    for (estimate, probabilities, truth) in
-        [run(ExtendedForm), run(UnscentedForm::default()), run(SquareRootForm)]
-    {
+    for (estimate, probabilities, truth) in [
+        run(ExtendedKalmanAlgorithm),
+        run(UnscentedKalmanAlgorithm::default()),
+        run(SquareRootKalmanAlgorithm),
+    ] {
         // Both models were equally probable at the start; 30 steps of turning must have told them apart.
         assert!(probabilities[1] > 0.5, "turning for 30 steps: {probabilities:?}");
         let error = estimate.mean().local(&truth);
@@ -275,12 +280,13 @@ fn poses_switch_too_and_their_headings_wrap() {
 }
 
 /// Two lights, 160 and 40; each filter drifts slowly.
-fn lights(n_histories: usize) -> JumpMarkovFilter<LinearMotion<f64, nalgebra::U1>, ExtendedForm> {
+fn lights(n_histories: usize) -> JumpMarkovFilter<LinearMotion<f64, nalgebra::U1>, ExtendedKalmanAlgorithm> {
     let drift = LinearMotion::stationary(Matrix1::new(0.5)).unwrap();
     let prior = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(400.0)).unwrap();
     let bank =
-        FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[prior(160.0), prior(40.0)]).unwrap();
-    let params = JumpMarkovFilterParams { n_histories, n_remembered_models: 40 };
+        FilterBank::new(vec![drift.clone(), drift], ExtendedKalmanAlgorithm, &[prior(160.0), prior(40.0)])
+            .unwrap();
+    let params = JumpMarkovFilterParams { n_histories, n_recorded_models: 40 };
     JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95).unwrap(), params).unwrap()
 }
 
@@ -363,8 +369,8 @@ fn all_histories_kept_are_the_exact_posterior() {
 #[test]
 fn refused_calls_leave_switching_filters_as_they_were() {
     let bad = Vector2::new(f64::NAN, 0.0);
-    let mut imm = ImmFilter::new(models(), chain(), ExtendedForm, &track_prior(4.0)).unwrap();
-    let mut gpb2 = Gpb2Filter::new(models(), chain(), ExtendedForm, &track_prior(4.0)).unwrap();
+    let mut imm = ImmFilter::new(models(), chain(), ExtendedKalmanAlgorithm, &track_prior(4.0)).unwrap();
+    let mut gpb2 = Gpb2Filter::new(models(), chain(), ExtendedKalmanAlgorithm, &track_prior(4.0)).unwrap();
     imm.predict(&None).unwrap();
     gpb2.predict(&None).unwrap();
     let (before_imm, before_gpb2) = (imm.estimate().unwrap(), gpb2.estimate().unwrap());

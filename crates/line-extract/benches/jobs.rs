@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_line_extract::{
-    LineExtractionParams, LineExtractor, PointDistance, PolylineSimplifier, Scan, SplitMethod,
+    LineExtractionParams, LineExtractor, PointDistanceReference, PolylineSimplifier, Scan, SplitMethod,
     douglas_peucker,
 };
 
@@ -19,7 +19,7 @@ pub(crate) fn run() {
         simplify(&case, "wayfix", PolylineSimplifier::default());
         simplify(&case, "wayfix hulls only", PolylineSimplifier::hull_tree_only());
         measure(&case.name, "wayfix classic", 1, || {
-            douglas_peucker(&case.points, case.epsilon, PointDistance::Line).expect("a valid chain")
+            douglas_peucker(&case.points, case.epsilon, PointDistanceReference::Line).expect("a valid chain")
         });
     }
     for case in [Case::comb(100_000), Case::straight(100_000)] {

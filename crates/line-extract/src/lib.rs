@@ -41,6 +41,6 @@ pub use laser::{
     WallHypothesis, WallSegment, extract,
 };
 pub use line::{HessianLine, LineEstimate, LineFit, fit_line};
-pub use simplify::{PointDistance, PolylineSimplifier, douglas_peucker, simplify};
+pub use simplify::{PointDistanceReference, PolylineSimplifier, douglas_peucker, simplify};
 
 pub use nalgebra;

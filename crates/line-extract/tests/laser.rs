@@ -239,7 +239,7 @@ fn geometry_and_parameters_without_meaning_are_refused() {
             LineExtractionParams { beam_noise: noise(0.01, bad), ..default },
             LineExtractionParams { breakpoint_angle_rad: bad, ..default },
             LineExtractionParams { split_distance_m: bad, ..default },
-            LineExtractionParams { end_gate_sigma: bad, ..default },
+            LineExtractionParams { end_point_gate_sigmas: bad, ..default },
             LineExtractionParams { merge_gate: bad, ..default },
             LineExtractionParams { merge_gap_m: bad, ..default },
             LineExtractionParams { min_length_m: bad, ..default },

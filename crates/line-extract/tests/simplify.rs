@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_line_extract::{
-    LineExtractionError, PointDistance, PolylineSimplifier, douglas_peucker, simplify,
+    LineExtractionError, PointDistanceReference, PolylineSimplifier, douglas_peucker, simplify,
 };
 
 const SEED_SIMPLE: u64 = 31;
@@ -16,7 +16,7 @@ type Point = Box<dyn Fn(usize) -> Vector2<f64>>;
 
 /// Both variants, the one with hulls also from the first split on, against the plain one.
 fn assert_same(chain: &Chain, epsilon: f64, what: &str) {
-    let expected = douglas_peucker(chain, epsilon, PointDistance::Line).expect("a valid chain");
+    let expected = douglas_peucker(chain, epsilon, PointDistanceReference::Line).expect("a valid chain");
     assert_eq!(simplify(chain, epsilon).expect("a valid chain"), expected, "{what}, patient");
     let mut kept = Vec::new();
     PolylineSimplifier::hull_tree_only().simplify_into(chain, epsilon, &mut kept).expect("a valid chain");
@@ -139,7 +139,7 @@ fn every_dropped_point_is_near_its_piece() {
 #[test]
 fn the_first_of_equally_far_points_splits() {
     let chain = [(0.0, 0.0), (1.0, 1.0), (2.0, 1.0), (3.0, 0.0)].map(|(x, y)| Vector2::new(x, y));
-    for kept in [douglas_peucker(&chain, 0.9, PointDistance::Line), simplify(&chain, 0.9)] {
+    for kept in [douglas_peucker(&chain, 0.9, PointDistanceReference::Line), simplify(&chain, 0.9)] {
         // Split at 1; the line from there to the end leaves point 2 at 0.45 m.
         assert_eq!(kept, Ok(vec![0, 1, 3]));
     }
@@ -162,7 +162,7 @@ fn bad_input_is_refused_and_leaves_the_result_alone() {
         assert!(
             matches!(refused, Err(LineExtractionError::Epsilon { value }) if value.to_bits() == epsilon.to_bits())
         );
-        assert!(douglas_peucker(&good, epsilon, PointDistance::Segment).is_err());
+        assert!(douglas_peucker(&good, epsilon, PointDistanceReference::Segment).is_err());
     }
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.1e150, -1e308] {
         for at in 0..4 {
@@ -175,7 +175,7 @@ fn bad_input_is_refused_and_leaves_the_result_alone() {
                 "{refused:?}"
             );
             assert_eq!(kept, [7, 8, 9]);
-            assert!(douglas_peucker(&chain, 0.1, PointDistance::Segment).is_err());
+            assert!(douglas_peucker(&chain, 0.1, PointDistanceReference::Segment).is_err());
         }
     }
 }
@@ -189,7 +189,7 @@ fn short_chains_and_extreme_sizes() {
         let chain: Chain =
             (0..300).map(|k| Vector2::new(f64::from(k), f64::from(k * k % 17)) * (unit / 300.0)).collect();
         assert_same(&chain, 0.0, "a chain of extreme size");
-        assert!(douglas_peucker(&chain, 0.0, PointDistance::Segment).is_ok());
+        assert!(douglas_peucker(&chain, 0.0, PointDistanceReference::Segment).is_ok());
     }
 }
 

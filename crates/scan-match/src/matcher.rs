@@ -83,15 +83,23 @@ impl ScanMatcher {
         let prior =
             prior.filter(|prior| guess.pose.is_finite() && prior.iter().all(|entry| entry.is_finite()));
         let prior = prior.ok_or(ScanMatchError::Guess)?;
-        let search =
-            |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.initial_kernel_m);
+        let search = |start| {
+            self.search(
+                reference,
+                cloud,
+                &guess.pose,
+                &prior,
+                start,
+                self.params.initial_robust_kernel_width_m,
+            )
+        };
         let mut found: Vec<Found> = self.starts(guess.covariance[(2, 2)].sqrt()).filter_map(search).collect();
         let fits = |found: &Found| found.misfit.n_inliers as f64 >= GOOD_OVERLAP * cloud.points.len() as f64;
         if !found.iter().any(fits) {
             let others = guess.alternative_poses.iter().filter(|other| other.is_finite());
             found.extend(others.filter_map(|other| {
                 let start = guess.pose.local(other);
-                self.search(reference, cloud, &guess.pose, &prior, start, self.params.kernel_m) // near already
+                self.search(reference, cloud, &guess.pose, &prior, start, self.params.robust_kernel_width_m) // near already
             }));
         }
         let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).ok_or(ScanMatchError::Guess)?;
@@ -124,21 +132,21 @@ impl ScanMatcher {
         start: Vector3<f64>,
         first_kernel: f64,
     ) -> Option<Found> {
-        let ScanMatchParams { kernel_m, max_iterations: max_steps, .. } = self.params;
+        let ScanMatchParams { robust_kernel_width_m, max_iterations: max_steps, .. } = self.params;
         let mut correction = start;
-        let mut kernel = first_kernel.max(kernel_m);
+        let mut kernel = first_kernel.max(robust_kernel_width_m);
         for _ in 0..max_steps {
             let misfit = Misfit::of(reference, cloud, guess, &correction, kernel, &self.params);
             let prior = prior / guess_scale(prior, &correction);
             let gradient = misfit.gradient + prior * correction;
             let step = Cholesky::new(misfit.information + prior)?.solve(&-gradient);
             correction += step;
-            if kernel == kernel_m && step.amax() < SHORT {
+            if kernel == robust_kernel_width_m && step.amax() < SHORT {
                 break;
             }
-            kernel = (kernel * NARROWING).max(kernel_m);
+            kernel = (kernel * NARROWING).max(robust_kernel_width_m);
         }
-        let misfit = Misfit::of(reference, cloud, guess, &correction, kernel_m, &self.params);
+        let misfit = Misfit::of(reference, cloud, guess, &correction, robust_kernel_width_m, &self.params);
         let nis = correction.dot(&(prior * correction));
         let cost = misfit.cost + (TAIL + 3.0) / 2.0 * (nis / TAIL).ln_1p();
         cost.is_finite().then_some(Found { correction, misfit, cost })

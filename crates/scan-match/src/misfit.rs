@@ -56,7 +56,7 @@ impl Misfit {
             misfit.gradient += jacobian * (weight * distance);
             misfit.information += jacobian * jacobian.transpose() * weight;
             noise_of_normals += by_normal * by_normal.transpose() * (weight * surface.normal_variance);
-            misfit.n_inliers += usize::from(distance.abs() < params.kernel_m);
+            misfit.n_inliers += usize::from(distance.abs() < params.robust_kernel_width_m);
         }
         misfit.without_noise_of_normals(&noise_of_normals)
     }

@@ -21,9 +21,9 @@ pub struct ScanMatchParams {
     /// adds no information. Default: 0.4.
     pub point_error_correlation_angle_rad: f64,
     /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
-    pub kernel_m: f64,
+    pub robust_kernel_width_m: f64,
     /// The initial kernel width, m: the expected error of the guess. Default: 0.5.
-    pub initial_kernel_m: f64,
+    pub initial_robust_kernel_width_m: f64,
     /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
     pub initial_heading_spacing_rad: f64,
     /// Steps of one search at most. Default: 30.
@@ -35,8 +35,8 @@ impl Default for ScanMatchParams {
         Self {
             point_sigma_m: 0.03,
             point_error_correlation_angle_rad: 0.4,
-            kernel_m: 0.1,
-            initial_kernel_m: 0.5,
+            robust_kernel_width_m: 0.1,
+            initial_robust_kernel_width_m: 0.5,
             initial_heading_spacing_rad: 0.2,
             max_iterations: 30,
         }
@@ -52,8 +52,8 @@ impl ScanMatchParams {
         for (what, value) in [
             ("point_sigma_m", self.point_sigma_m),
             ("point_error_correlation_angle_rad", self.point_error_correlation_angle_rad),
-            ("kernel_m", self.kernel_m),
-            ("initial_kernel_m", self.initial_kernel_m),
+            ("robust_kernel_width_m", self.robust_kernel_width_m),
+            ("initial_robust_kernel_width_m", self.initial_robust_kernel_width_m),
             ("initial_heading_spacing_rad", self.initial_heading_spacing_rad),
         ] {
             if !(1e-6..=1e3).contains(&value) {

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{Write, stdout};
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_scene_sim::indoors::{IndoorDrive, IndoorParams, Laboratory, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{IndoorDrive, IndoorDriveParams, Laboratory, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::random::RandomStreams;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => RetailStore::draw(RetailStoreParams::home_store(), &mut rng)?.building(),
     };
     let route = building.aisles().tour(n_views as f64, &mut rng)?;
-    let params = IndoorParams { n_people: 6, ..IndoorParams::default() };
+    let params = IndoorDriveParams { n_people: 6, ..IndoorDriveParams::default() };
     let drive = IndoorDrive::new(&building, route, params, RandomStreams::new(rng))?;
     let views: Vec<_> = drive.step_by(4).map(|step| step.view).collect();
     let Some(first) = views.first() else { return Ok(()) };

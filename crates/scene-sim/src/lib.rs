@@ -57,6 +57,6 @@ pub use error::SimulationError;
 #[cfg(feature = "indoors")]
 pub use scenario::RetailStoreLapsParams;
 pub use scenario::{
-    LaserDriveParams, OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams,
+    LaserDriveParams, OdometryParams, OtherRobotParams, PlanarDriveParams, Scenario, ScenarioParams,
 };
 pub use simulation::Simulation;

@@ -33,7 +33,7 @@ pub struct Simulation<'a> {
     /// Route of the robot; it starts at rest at the beginning.
     pub route: Route,
     /// The robot. Default as [`WheeledRobotParams`].
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Duration, milliseconds, at most a day. Default 60 000.
     pub duration_ms: u64,
     /// Time from one true pose in the log to the next, milliseconds. Default 100.
@@ -50,7 +50,7 @@ impl<'a> Simulation<'a> {
         Self {
             world,
             route,
-            drive: WheeledRobotParams::default(),
+            robot: WheeledRobotParams::default(),
             duration_ms: 60_000,
             truth_period_ms: 100,
             true_walls: false,
@@ -67,7 +67,7 @@ impl<'a> Simulation<'a> {
         streams: &mut RandomStreams,
     ) -> Result<Vec<Record>, SimulationError> {
         self.validate(sensors)?;
-        let mut robot = DifferentialDrive::new(self.drive, self.route.at(0.0))?;
+        let mut robot = DifferentialDrive::new(self.robot, self.route.at(0.0))?;
         let mut driver = PurePursuit::default();
         let mut records = self.surveyed();
         for milliseconds in 0..=self.duration_ms {
@@ -78,7 +78,7 @@ impl<'a> Simulation<'a> {
                 world: self.world,
             };
             self.log(&moment, sensors, streams, &mut records);
-            let (linear, angular) = driver.command(STEP_S, &self.route, &robot.pose(), &self.drive);
+            let (linear, angular) = driver.command(STEP_S, &self.route, &robot.pose(), &self.robot);
             robot.step(STEP_S, linear, angular, streams);
         }
         records.sort_by_key(|record| record.stamp);

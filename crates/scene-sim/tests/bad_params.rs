@@ -4,7 +4,7 @@ mod support;
 
 use support::{streams, world};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
+use wayfix_scene_sim::drive::{WheelSlipParams, WheeledRobotParams};
 use wayfix_scene_sim::monobot::MonobotParams;
 use wayfix_scene_sim::random::{NoiseShape, RandomStreamPurpose};
 use wayfix_scene_sim::route::{
@@ -12,7 +12,7 @@ use wayfix_scene_sim::route::{
 };
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::{
-    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+    Clutter, ClutterIdentity, CorrelatedErrorParams, RangeDependentSigma,
 };
 use wayfix_scene_sim::sensor::{
     GaussianOdometryParams, LaserParams, RangeBearingParams, SimulatedSensor, WheelOdometryParams,
@@ -56,9 +56,12 @@ fn sensor_parameters() {
             RangeBearingParams { drift: drift(1.0, bad), ..honest },
             RangeBearingParams { outlier_share: bad, ..honest },
             RangeBearingParams { scan_dropout_share: bad, ..honest },
-            RangeBearingParams { missed_share: bad, ..honest },
+            RangeBearingParams { missed_target_share: bad, ..honest },
             RangeBearingParams { mislabelled_share: bad, ..honest },
-            RangeBearingParams { clutter: Clutter { mean: bad, label: ClutterLabel::Unlabelled }, ..honest },
+            RangeBearingParams {
+                clutter: Clutter { mean: bad, label: ClutterIdentity::Unlabelled },
+                ..honest
+            },
         ] {
             assert_refused(params.validate(), bad);
         }
@@ -122,19 +125,25 @@ fn drive_and_odometry_parameters() {
             WheeledRobotParams { wheel_separation_error: bad, ..good },
             WheeledRobotParams { motor_lag_s: bad, ..good },
             WheeledRobotParams { lookahead_m: bad, ..good },
-            WheeledRobotParams { slip: SlipParams { slip_sigma: bad, ..good.slip }, ..good },
-            WheeledRobotParams { slip: SlipParams { correlation_time_s: bad, ..good.slip }, ..good },
-            WheeledRobotParams { slip: SlipParams { wheel_correlation: bad, ..good.slip }, ..good },
+            WheeledRobotParams { slip: WheelSlipParams { slip_sigma: bad, ..good.slip }, ..good },
+            WheeledRobotParams { slip: WheelSlipParams { correlation_time_s: bad, ..good.slip }, ..good },
+            WheeledRobotParams { slip: WheelSlipParams { wheel_correlation: bad, ..good.slip }, ..good },
         ] {
             assert_refused(params.validate(), bad);
         }
         let wheels = WheelOdometryParams::default();
         assert_refused(WheelOdometryParams { wheel_radius_m: bad, ..wheels }.validate(), bad);
         assert_refused(WheelOdometryParams { wheel_separation_m: bad, ..wheels }.validate(), bad);
-        assert_refused(WheelOdometryParams { travel_noise: bad, ..wheels }.validate(), bad);
+        assert_refused(WheelOdometryParams { travel_sigma_share: bad, ..wheels }.validate(), bad);
         let gaussian = GaussianOdometryParams::default();
-        assert_refused(GaussianOdometryParams { sigma_m: bad, ..gaussian }.validate(), bad);
-        assert_refused(GaussianOdometryParams { sigma_rad: bad, ..gaussian }.validate(), bad);
+        assert_refused(
+            GaussianOdometryParams { increment_position_sigma_m: bad, ..gaussian }.validate(),
+            bad,
+        );
+        assert_refused(
+            GaussianOdometryParams { increment_heading_sigma_rad: bad, ..gaussian }.validate(),
+            bad,
+        );
     }
     let wheels = WheelOdometryParams::default();
     assert_refused(WheelOdometryParams { ticks_per_turn: Some(0), ..wheels }.validate(), 0.0);
@@ -245,11 +254,11 @@ fn simulations_scenarios_and_the_monobot() {
 
     assert!(matches!(Scenario::named("nowhere"), Err(SimulationError::UnknownScenario { .. })));
     for bad in BAD {
-        let motion = MonobotParams { motion_noise: bad, ..MonobotParams::default() };
+        let motion = MonobotParams { motion_sigma_share: bad, ..MonobotParams::default() };
         assert_refused(motion.simulate(&mut streams(1)).map(drop), bad);
-        let range = MonobotParams { range_noise: bad, ..MonobotParams::default() };
+        let range = MonobotParams { range_sigma_share: bad, ..MonobotParams::default() };
         assert_refused(range.simulate(&mut streams(1)).map(drop), bad);
-        let external = MonobotParams { external_sigma_m: bad, ..MonobotParams::default() };
+        let external = MonobotParams { external_position_sigma_m: bad, ..MonobotParams::default() };
         assert_refused(external.simulate(&mut streams(1)).map(drop), bad);
     }
     let endless = MonobotParams { n_steps: usize::MAX, ..MonobotParams::default() };

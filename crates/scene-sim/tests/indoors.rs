@@ -4,7 +4,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::WheeledRobotParams;
 use wayfix_scene_sim::indoors::{
-    AmbientLightParams, Building, IndoorDrive, IndoorDriveStep, IndoorParams, Laboratory, MirrorCamera,
+    AmbientLightParams, Building, IndoorDrive, IndoorDriveParams, IndoorDriveStep, Laboratory, MirrorCamera,
     OmniCameraParams, RetailStore, RetailStoreParams, calibrated_robot,
 };
 use wayfix_scene_sim::random::RandomStreams;
@@ -21,7 +21,7 @@ fn area() -> RetailStore {
     RetailStore::draw(RetailStoreParams::area(), &mut rng()).expect("the area is a store")
 }
 
-fn tour(building: &Building, params: IndoorParams, length_m: f64, seed: u64) -> Vec<IndoorDriveStep> {
+fn tour(building: &Building, params: IndoorDriveParams, length_m: f64, seed: u64) -> Vec<IndoorDriveStep> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let route = building.aisles().tour(length_m, &mut rng).expect("there are aisles");
     IndoorDrive::new(building, route, params, RandomStreams::new(rng))
@@ -85,7 +85,7 @@ fn views_differ_more_the_farther_apart_they_are() {
 #[test]
 fn a_seed_gives_the_same_drive_and_another_seed_another() {
     let building = area().building();
-    let params = IndoorParams { n_people: 3, ..IndoorParams::default() };
+    let params = IndoorDriveParams { n_people: 3, ..IndoorDriveParams::default() };
     let drive = |seed| tour(&building, params, 20.0, seed);
     assert_eq!(drive(1), drive(1));
     assert_ne!(drive(1), drive(2));
@@ -102,10 +102,10 @@ fn people_and_the_light_do_not_disturb_where_the_robot_drives() {
         tour(&building, params, 20.0, 1).iter().map(|step| (step.pose, step.odometry)).collect::<Vec<_>>()
     };
     let ambient_light =
-        AmbientLightParams { mean_switching_interval_s: Some(1.0), ..AmbientLightParams::default() };
+        AmbientLightParams { mean_lamp_switching_s: Some(1.0), ..AmbientLightParams::default() };
     assert_eq!(
-        poses(IndoorParams { n_people: 9, ambient_light, ..IndoorParams::default() }),
-        poses(IndoorParams::default())
+        poses(IndoorDriveParams { n_people: 9, ambient_light, ..IndoorDriveParams::default() }),
+        poses(IndoorDriveParams::default())
     );
 }
 
@@ -121,7 +121,7 @@ fn tours_keep_clear_of_the_shelves_and_see_every_aisle() {
             rays_per_pixel: [1, 1],
             ..OmniCameraParams::default()
         };
-        let params = IndoorParams { camera, ..IndoorParams::default() };
+        let params = IndoorDriveParams { camera, ..IndoorDriveParams::default() };
         let steps = tour(&building, params, 2.0 * aisles_m, 3);
         let walls = building.walls();
         for step in &steps {
@@ -149,8 +149,9 @@ fn calibrated_wheels_drift_by_what_is_said_of_them() {
         OmniCameraParams { n_columns: 4, n_rings: 1, rays_per_pixel: [1, 1], ..OmniCameraParams::default() };
     let (mut squares, mut expected) = (0.0, 0.0);
     for seed in 0..N {
-        let drive: WheeledRobotParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
-        let steps = tour(&building, IndoorParams { drive, camera, ..IndoorParams::default() }, 100.0, seed);
+        let robot: WheeledRobotParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
+        let steps =
+            tour(&building, IndoorDriveParams { robot, camera, ..IndoorDriveParams::default() }, 100.0, seed);
         let headings = [0, steps.len() - 1].map(|k| steps[k].pose.heading());
         let turned: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.heading()).sum();
         squares += Pose2::new(0.0, 0.0, turned - (headings[1] - headings[0])).heading().powi(2);
@@ -175,14 +176,14 @@ fn rearranging_nothing_changes_nothing() {
 #[test]
 fn switching_changes_the_lab_and_leaves_the_default_alone() {
     let building = Laboratory::draw(&mut rng()).building();
-    let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorParams::default().drive };
-    let change = |mean_switching_interval_s| {
+    let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorDriveParams::default().robot };
+    let change = |mean_lamp_switching_s| {
         let ambient_light = AmbientLightParams {
-            mean_switching_interval_s,
-            daylight_sigma: 0.0,
+            mean_lamp_switching_s,
+            daylight_log_sigma: 0.0,
             ..AmbientLightParams::default()
         };
-        let params = IndoorParams { drive: creeping, ambient_light, ..IndoorParams::default() };
+        let params = IndoorDriveParams { robot: creeping, ambient_light, ..IndoorDriveParams::default() };
         let route = building.aisles().tour(1.0, &mut rng()).expect("there are aisles");
         let drive = IndoorDrive::new(&building, route, params, RandomStreams::new(rng())).expect("sound");
         let views: Vec<RgbPicture> = drive.take(120).map(|step| step.view).collect();
@@ -250,15 +251,15 @@ fn numbers_without_a_meaning_are_refused() {
     }
     assert!(building.render_view(&Pose2::new(f64::NAN, 0.0, 0.0), camera, &mut rng()).is_err());
     let standing = WheeledRobotParams { speed_mps: 0.0, ..WheeledRobotParams::default() };
-    let params = IndoorParams::default();
+    let params = IndoorDriveParams::default();
     for bad in [
-        IndoorParams { drive: standing, ..params },
-        IndoorParams { view_period_ms: 505, ..params },
-        IndoorParams { view_period_ms: 0, ..params },
-        IndoorParams { n_people: 1 << 20, ..params },
-        IndoorParams {
+        IndoorDriveParams { robot: standing, ..params },
+        IndoorDriveParams { view_period_ms: 505, ..params },
+        IndoorDriveParams { view_period_ms: 0, ..params },
+        IndoorDriveParams { n_people: 1 << 20, ..params },
+        IndoorDriveParams {
             ambient_light: AmbientLightParams {
-                mean_switching_interval_s: Some(0.0),
+                mean_lamp_switching_s: Some(0.0),
                 ..AmbientLightParams::default()
             },
             ..params

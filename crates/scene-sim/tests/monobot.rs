@@ -13,9 +13,9 @@ fn runs(params: MonobotParams, n: u64) -> Vec<MonobotRun> {
 #[test]
 fn without_noise_it_follows_the_sine_and_returns() {
     let silent = MonobotParams {
-        motion_noise: 0.0,
-        range_noise: 0.0,
-        external_sigma_m: 0.0,
+        motion_sigma_share: 0.0,
+        range_sigma_share: 0.0,
+        external_position_sigma_m: 0.0,
         ..MonobotParams::default()
     };
     let run = &runs(silent, 1)[0];
@@ -55,7 +55,7 @@ fn noise_is_in_proportion_to_motion_and_distance() {
 #[test]
 fn as_a_log_it_says_the_same() {
     // A landmark that the robot passes: behind it, bearings are π.
-    let params = MonobotParams { landmark_m: -1.2, n_landmarks: 2, ..MonobotParams::default() };
+    let params = MonobotParams { landmark_position_m: -1.2, n_landmarks: 2, ..MonobotParams::default() };
     let run = &runs(params, 1)[0];
     let records = run.records(Stamp::from_nanoseconds(0), 100);
     let mut looks = records.iter().filter_map(|r| match &r.data {

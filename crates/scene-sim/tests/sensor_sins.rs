@@ -8,7 +8,7 @@ use support::{assert_near, assert_share, detections, deviation, looks, mean, str
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{
-    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+    Clutter, ClutterIdentity, CorrelatedErrorParams, RangeDependentSigma,
 };
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
 use wayfix_sensor_log::{Detection, DetectionTarget};
@@ -134,7 +134,7 @@ fn outliers_drop_outs_and_misses_come_in_the_shares_asked_for() {
     let lost = looks(params, &ahead(), N, &mut streams(SEED)).iter().filter(|look| look.is_none()).count();
     assert_share("lost looks", lost, n, 0.1);
 
-    let seen = detections(RangeBearingParams { missed_share: 0.2, ..silent() }, &ahead(), N, SEED);
+    let seen = detections(RangeBearingParams { missed_target_share: 0.2, ..silent() }, &ahead(), N, SEED);
     assert_share("missed", n - seen.len(), n, 0.2);
 }
 
@@ -152,9 +152,9 @@ fn outliers_are_anywhere_in_view() {
 #[test]
 fn clutter_is_poisson_and_passes_for_what_was_asked() {
     for (label, passes) in [
-        (ClutterLabel::Unlabelled, (|t| t == DetectionTarget::Unlabelled) as fn(DetectionTarget) -> bool),
-        (ClutterLabel::AnyLandmark, |t| matches!(t, DetectionTarget::Landmark(0 | 1))),
-        (ClutterLabel::UnknownCode(77), |t| t == DetectionTarget::UnknownCode(77)),
+        (ClutterIdentity::Unlabelled, (|t| t == DetectionTarget::Unlabelled) as fn(DetectionTarget) -> bool),
+        (ClutterIdentity::AnyLandmark, |t| matches!(t, DetectionTarget::Landmark(0 | 1))),
+        (ClutterIdentity::UnknownCode(77), |t| t == DetectionTarget::UnknownCode(77)),
     ] {
         let clutter = Clutter { mean: 0.7, label };
         // Landmarks out of reach: whatever is reported is clutter.

@@ -6,7 +6,7 @@ use support::{looks, run, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{
-    Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma,
+    Clutter, ClutterIdentity, CorrelatedErrorParams, RangeDependentSigma,
 };
 use wayfix_scene_sim::{Scenario, ScenarioParams};
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
@@ -34,10 +34,13 @@ fn switching_one_sin_on_leaves_the_draws_of_the_others() {
     let plain = of_the_landmark(honest);
     for (what, sinful) in [
         ("drop-outs", RangeBearingParams { scan_dropout_share: 0.3, ..honest }),
-        ("misses", RangeBearingParams { missed_share: 0.3, ..honest }),
+        ("misses", RangeBearingParams { missed_target_share: 0.3, ..honest }),
         (
             "clutter",
-            RangeBearingParams { clutter: Clutter { mean: 2.0, label: ClutterLabel::Unlabelled }, ..honest },
+            RangeBearingParams {
+                clutter: Clutter { mean: 2.0, label: ClutterIdentity::Unlabelled },
+                ..honest
+            },
         ),
         ("outliers", RangeBearingParams { outlier_share: 0.3, ..honest }),
         ("mislabelling", RangeBearingParams { mislabelled_share: 0.3, ..honest }),
@@ -59,7 +62,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     let drift = CorrelatedErrorParams { range_sigma: range, ..CorrelatedErrorParams::default() };
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };
-    let missing = RangeBearingParams { missed_share: 0.3, ..honest };
+    let missing = RangeBearingParams { missed_target_share: 0.3, ..honest };
     assert_eq!(missed(missing), missed(RangeBearingParams { noise_shape: NoiseShape::Laplace, ..missing }));
 }
 

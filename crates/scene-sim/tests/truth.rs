@@ -4,7 +4,7 @@ mod support;
 
 use support::{assert_near, deviation, mean, run, streams, world};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
-use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
+use wayfix_scene_sim::drive::{WheelSlipParams, WheeledRobotParams};
 use wayfix_scene_sim::route::{
     CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route,
 };
@@ -37,12 +37,12 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
 
 fn drive(
     route: Route,
-    drive: WheeledRobotParams,
+    robot: WheeledRobotParams,
     sensor: Option<Box<dyn SimulatedSensor>>,
     duration_ms: u64,
 ) -> Vec<Record> {
     let nothing = world(&[]);
-    let simulation = Simulation { drive, duration_ms, ..Simulation::new(&nothing, route) };
+    let simulation = Simulation { robot, duration_ms, ..Simulation::new(&nothing, route) };
     let mut sensors: Vec<Box<dyn SimulatedSensor>> = sensor.into_iter().collect();
     simulation.run(&mut sensors, &mut streams(5)).expect("valid parameters")
 }
@@ -84,7 +84,7 @@ fn truth_period_ms(records: &[Record]) -> f64 {
 fn the_robot_keeps_to_its_route() {
     let mut rng = streams(9);
     let rng = rng.of(wayfix_scene_sim::random::RandomStreamPurpose::Route);
-    let slip = SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.5 };
+    let slip = WheelSlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.5 };
     let sinful = WheeledRobotParams {
         slip,
         left_radius_error: 0.02,
@@ -132,7 +132,7 @@ fn odometry_of_an_honest_robot_retraces_its_way() {
     // Within a period of 0.1 s wheel speeds change a little, which arcs of constant curvature do not retrace exactly.
     assert!(end.local(&poses[poses.len() - 1]).norm() < 1e-3, "{:?}", end.local(&poses[poses.len() - 1]));
 
-    let held = WheelOdometryParams { kind: OdometryEncoding::Velocity, ..exact };
+    let held = WheelOdometryParams { encoding: OdometryEncoding::Velocity, ..exact };
     let records = drive(
         circle(),
         WheeledRobotParams::default(),
@@ -173,7 +173,7 @@ fn wheels_that_are_not_as_built_bend_the_way() {
 #[test]
 fn slip_has_the_size_asked_for() {
     // Straight drive, both wheels slipping as one: true travel falls short of the encoders' by the mean slip over a period.
-    let slip = SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 1.0 };
+    let slip = WheelSlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 1.0 };
     let straight = LawnMowerRoute { n_rows: 1, row_length_m: 3000.0, spacing_m: 1.0 }.route().expect("valid");
     let exact = WheelOdometryParams { ticks_per_turn: None, ..WheelOdometryParams::default() };
     let records = drive(
@@ -232,8 +232,8 @@ fn gaussian_odometry_has_the_noise_of_the_shared_logs() {
 #[test]
 fn latency_shows_in_the_stamps_alone() {
     let scene = world(&[(3.0, 0.0), (-3.0, 1.0)]);
-    let looks = |latency_ms| -> Vec<Record> {
-        let params = RangeBearingParams { latency_ms, ..RangeBearingParams::default() };
+    let looks = |stamp_delay_ms| -> Vec<Record> {
+        let params = RangeBearingParams { stamp_delay_ms, ..RangeBearingParams::default() };
         let sensor = Box::new(RangeBearingDetector::new(params).expect("valid"));
         let route = CircleRoute { radius_m: 2.0 }.route().expect("valid");
         let records = Simulation::new(&scene, route).run(&mut [sensor], &mut streams(5)).expect("valid");

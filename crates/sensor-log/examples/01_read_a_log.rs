@@ -4,13 +4,13 @@
 
 use std::error::Error;
 
-use wayfix_sensor_log::{LogSummary, OpenOptions, RecordData, open};
+use wayfix_sensor_log::{LogOpenOptions, LogSummary, RecordData, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("give the path of a log")?;
     let robot = arguments.next().map(|robot| robot.parse()).transpose()?;
-    let options = OpenOptions { robot, ..Default::default() };
+    let options = LogOpenOptions { robot, ..Default::default() };
 
     print!("{}", LogSummary::of(open(&path, &options)?));
 

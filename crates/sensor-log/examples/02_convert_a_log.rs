@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use wayfix_sensor_log::{LogFormat, OpenOptions, convert, open};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, convert, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -13,11 +13,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let format: LogFormat = format.parse()?;
     let robot = robot.first().map(|robot| robot.parse()).transpose()?;
-    let log = open(input, &OpenOptions { robot, ..Default::default() })?;
+    let log = open(input, &LogOpenOptions { robot, ..Default::default() })?;
     let (read, written) = convert(log, output, format)?;
     print!("{read}{written}");
 
-    let back = open(output, &OpenOptions { format: Some(format), ..Default::default() })?;
+    let back = open(output, &LogOpenOptions { format: Some(format), ..Default::default() })?;
     println!("{} records come back", back.count());
     Ok(())
 }

@@ -7,15 +7,15 @@ use crate::{Log, LogError, LogFormat, ReadReport, WriteReport};
 /// Writes the remaining records of a log to the file at `path`, replacing it, and reports what could not be read or written.
 ///
 /// Records pass through one by one, so memory use does not grow with the log. An MCAP file stores the origin of its records
-/// ([`LogMeta::origin`](crate::LogMeta::origin)), so that later readers treat them like the original ones.
+/// ([`LogMetadata::origin`](crate::LogMetadata::origin)), so that later readers treat them like the original ones.
 /// ```
-/// use wayfix_sensor_log::{LogFormat, OpenOptions, convert, open};
+/// use wayfix_sensor_log::{LogFormat, LogOpenOptions, convert, open};
 /// # let folder = tempfile::tempdir()?;
 /// # let (text, mcap) = (folder.path().join("walk.txt"), folder.path().join("walk.mcap"));
 /// std::fs::write(&text, "O 1 0 0\nZ 7 2 0.1\n")?;
-/// let (read, written) = convert(open(&text, &OpenOptions::default())?, &mcap, LogFormat::Mcap)?;
+/// let (read, written) = convert(open(&text, &LogOpenOptions::default())?, &mcap, LogFormat::Mcap)?;
 /// assert_eq!((read.rows_read, written.records_written), (2, 2));
-/// assert_eq!(open(&mcap, &OpenOptions::default())?.meta().origin, Some(LogFormat::RangeBearing));
+/// assert_eq!(open(&mcap, &LogOpenOptions::default())?.meta().origin, Some(LogFormat::RangeBearing));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::{ImageFormat, LogEnd, LogFormat, Stamp};
+use crate::{ImageFileFormat, LogCompleteness, LogFormat, Stamp};
 
 /// Errors of opening and writing logs, with remedies.
 #[derive(Debug, thiserror::Error)]
@@ -162,7 +162,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
         /// How it ends.
-        end: LogEnd,
+        end: LogCompleteness,
     },
     /// A format that is read only.
     #[error("{format} logs are read, not written; write one of range-bearing, tum, mcap")]
@@ -198,7 +198,7 @@ pub enum LogError {
         /// Kind of the record.
         what: &'static str,
         /// The expected compression.
-        format: ImageFormat,
+        format: ImageFileFormat,
         /// Number of bytes.
         n_bytes: usize,
         /// Stamp of the record.
@@ -219,7 +219,7 @@ pub enum LogError {
     /// Writing an MCAP file failed.
     #[error("MCAP output: {0}")]
     McapOutput(Box<mcap::McapError>),
-    /// A [`MessageSink`](crate::MessageSink) of the caller's own failed.
+    /// A [`FoxgloveMessageSink`](crate::FoxgloveMessageSink) of the caller's own failed.
     #[error("messages cannot be passed on: {0}")]
     Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A name that is no format.

@@ -14,16 +14,16 @@
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
 //! | [`LogFormat::Images`] | a folder of PNG and JPEG files | images |
 //!
-//! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`MessageWriter`]
+//! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`FoxgloveMessageWriter`]
 //! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
 //! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```
-//! use wayfix_sensor_log::{RecordData, OpenOptions, open};
+//! use wayfix_sensor_log::{RecordData, LogOpenOptions, open};
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("walk.txt");
 //! std::fs::write(&path, "L 7 2.0 0.0\nO 0.5 0.0 0.0\nZ 7 1.5 0.0\nZ 7 far 0.0\n")?;
-//! let mut log = open(&path, &OpenOptions::default())?;
+//! let mut log = open(&path, &LogOpenOptions::default())?;
 //! let detections = log.by_ref().filter(|record| matches!(record.data, RecordData::Detections(_))).count();
 //! assert_eq!(detections, 1);
 //! assert_eq!(log.report().n_problems(), 1); // line 4: "far" is not a number
@@ -43,6 +43,7 @@ mod log;
 mod mcap_log;
 mod open;
 mod planar;
+mod pose_measurement;
 mod record;
 mod report;
 pub mod ros;
@@ -58,19 +59,20 @@ pub use convert::convert;
 pub use error::LogError;
 pub use formats::compressed::read_text;
 pub use formats::format::LogFormat;
-pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, LogImageStatistics, PixelLayout};
+pub use image::{DecodedImage, EncodedImage, ImageError, ImageFileFormat, LogImageStatistics, PixelLayout};
 pub use image_folder::{image_files, is_hidden};
-pub use log::{Log, LogMeta};
+pub use log::{Log, LogMetadata};
 pub use mcap_log::{
-    ChannelKey, DrawingShape, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageSinks,
-    MessageWriter, ViewerDrawing, topics,
+    ChannelKey, DrawingShape, FoxgloveMessage, FoxgloveMessageSink, FoxgloveMessageWriter, ImageOutline,
+    McapMessageSink, McapWriter, MessageSinks, ViewerDrawing, topics,
 };
-pub use open::{OpenOptions, PoseKind, open, open_all};
+pub use open::{LogOpenOptions, PoseKind, open, open_all};
+pub use pose_measurement::{MeasuredQuantity, PoseMeasurement};
 pub use record::{
     CameraInfo, Detection, DetectionTarget, Record, RecordData, TrueLandmark, TruePosition, TrueWall,
     Velocity,
 };
-pub use report::{LogEnd, LogWarning, ReadReport, RowProblem, RowProblemKind};
+pub use report::{LogCompleteness, LogWarning, ReadReport, RowProblem, RowProblemKind};
 pub use scan::{LaserScan, LogScanStatistics};
 pub use stamp::Stamp;
 pub use summary::{LogSummary, RecordKindSummary};

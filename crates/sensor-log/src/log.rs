@@ -11,7 +11,7 @@ use crate::{BagTopic, LogFormat, ReadReport, Record};
 ///
 /// Iterate by reference to keep access to the report: for streamed formats it is complete only at the end.
 pub struct Log {
-    meta: LogMeta,
+    meta: LogMetadata,
     /// The record that was read to see whether there is one.
     first: Option<Record>,
     rest: Records,
@@ -21,7 +21,7 @@ pub struct Log {
 /// Metadata of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct LogMeta {
+pub struct LogMetadata {
     /// The storage format.
     pub format: LogFormat,
     /// The original format of a [converted](crate::convert) log, if stored in it.
@@ -36,7 +36,7 @@ pub struct LogMeta {
     pub topics: Vec<BagTopic>,
 }
 
-impl LogMeta {
+impl LogMetadata {
     /// The original format of the records if known, else MCAP.
     pub fn first_format(&self) -> LogFormat {
         self.origin.unwrap_or(self.format)
@@ -64,11 +64,11 @@ impl Records {
 }
 
 impl Log {
-    pub(crate) fn new(meta: LogMeta, first: Record, rest: Records, report: ReadReport) -> Self {
+    pub(crate) fn new(meta: LogMetadata, first: Record, rest: Records, report: ReadReport) -> Self {
         Self { meta, first: Some(first), rest, report }
     }
     /// Metadata of the log.
-    pub fn meta(&self) -> &LogMeta {
+    pub fn meta(&self) -> &LogMetadata {
         &self.meta
     }
     /// Report of the reading so far.

@@ -6,11 +6,13 @@ use crate::image_folder::ImageFolder;
 use crate::log::Records;
 use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
-use crate::{Log, LogEnd, LogError, LogFormat, LogMeta, LogWarning, ReadReport, Record, RecordData};
+use crate::{
+    Log, LogCompleteness, LogError, LogFormat, LogMetadata, LogWarning, ReadReport, Record, RecordData,
+};
 
 /// Options for opening a log. The default detects all of them.
 #[derive(Clone, Debug)]
-pub struct OpenOptions {
+pub struct LogOpenOptions {
     /// The format; `None` detects it.
     pub format: Option<LogFormat>,
     /// Which robot, in sets of several.
@@ -23,7 +25,7 @@ pub struct OpenOptions {
     pub frame_rate_hz: f64,
 }
 
-impl Default for OpenOptions {
+impl Default for LogOpenOptions {
     fn default() -> Self {
         Self {
             format: None,
@@ -65,13 +67,13 @@ impl PoseKind {
 ///
 /// MCAP files are read chunk by chunk; a record more than 256 records late is skipped. A folder with one MCAP file stands for that file. A folder
 /// with files named like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or listed in its `metadata.yaml`, stands for all of them. In ROS 2
-/// bags each kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] lists the use of the others.
+/// bags each kind of record comes from one topic, see [`LogOpenOptions::topics`]; [`LogMetadata::topics`] lists the use of the others.
 ///
 /// Folders of images are read file by file, in the order of their names with numbers by value (`frame9` before `frame10`); other files are
 /// skipped. An unreadable file keeps its frame number, so that later stamps stay correct.
 /// # Errors
 /// Returns an error if the log is unusable: see [`LogError`]. Single bad rows are no error; [`Log::report`] lists them.
-pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogError> {
+pub fn open(path: impl AsRef<Path>, options: &LogOpenOptions) -> Result<Log, LogError> {
     let path = path.as_ref();
     let format = match options.format {
         Some(format) => format,
@@ -84,20 +86,20 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
 /// Opens a log recorded in several MCAP files, given in any order; all messages come in time order.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{RecordData, LogFormat, OpenOptions, Record, Stamp, open_all, write};
+/// use wayfix_sensor_log::{RecordData, LogFormat, LogOpenOptions, Record, Stamp, open_all, write};
 /// # let folder = tempfile::tempdir()?;
 /// # let (first, second) = (folder.path().join("drive_0.mcap"), folder.path().join("drive_1.mcap"));
 /// let at = |second: u64| Record { stamp: Stamp::from_nanoseconds(second), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
 /// write(&first, LogFormat::Mcap, [at(1), at(2)])?;
 /// write(&second, LogFormat::Mcap, [at(3)])?;
-/// let (records, _) = open_all(&[second, first], &OpenOptions::default())?.read_all();
+/// let (records, _) = open_all(&[second, first], &LogOpenOptions::default())?.read_all();
 /// assert_eq!(records, [at(1), at(2), at(3)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// Returns [`LogError::NotAPart`], [`LogError::NoPath`], or the errors of [`open`], which handles a single path.
-pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log, LogError> {
+pub fn open_all(paths: &[impl AsRef<Path>], options: &LogOpenOptions) -> Result<Log, LogError> {
     if let [path] = paths {
         return open(path, options);
     }
@@ -120,7 +122,7 @@ fn open_files(
     format: LogFormat,
     files: Vec<PathBuf>,
     warnings: Vec<LogWarning>,
-    options: &OpenOptions,
+    options: &LogOpenOptions,
 ) -> Result<Log, LogError> {
     // A folder with one file is that file.
     let path = if let [file] = files.as_slice() { file.clone() } else { source.into() };
@@ -129,7 +131,7 @@ fn open_files(
         return Err(LogError::NoTopics { path: path.into(), format });
     }
     let mut meta =
-        LogMeta { format, origin: None, source: path.into(), files, robot: None, topics: Vec::new() };
+        LogMetadata { format, origin: None, source: path.into(), files, robot: None, topics: Vec::new() };
     let mut report = ReadReport { warnings, ..ReadReport::default() };
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
@@ -161,7 +163,7 @@ fn open_files(
 /// Reason for the absence of records: damage, wrong content, or an empty log.
 fn nothing_in(path: &Path, format: LogFormat, report: &ReadReport) -> LogError {
     let path = path.to_path_buf();
-    if report.end != LogEnd::Complete {
+    if report.end != LogCompleteness::Complete {
         LogError::Damaged { path, end: report.end.clone() }
     } else if let Some(problem) = report.examples.first() {
         LogError::NotThisFormat { path, format, reason: problem.to_string() }

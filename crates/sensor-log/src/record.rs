@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
-use crate::{AckermannDrive, EncodedImage, LaserScan, Stamp};
+use crate::{AckermannDrive, EncodedImage, LaserScan, PoseMeasurement, Stamp};
 
 /// A stamped datum.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,8 @@ pub enum RecordData {
     TrueLandmark(TrueLandmark),
     /// True position of a wall.
     TrueWall(TrueWall),
+    /// Measurement of the pose, or a part of it, by a sensor that does not use the map.
+    PoseMeasurement(PoseMeasurement),
     /// A pose some program estimated.
     EstimatedPose(Pose2<f64>),
     /// Calibration of the camera; it holds until the next one.
@@ -67,6 +69,7 @@ impl RecordData {
             Self::TruePosition(_) => "true position",
             Self::TrueLandmark(_) => "true landmark",
             Self::TrueWall(_) => "true wall",
+            Self::PoseMeasurement(_) => "pose measurement",
             Self::EstimatedPose(_) => "estimated pose",
             Self::CameraInfo(_) => "camera info",
             Self::CameraMount(_) => "camera mount",
@@ -92,6 +95,7 @@ impl RecordData {
             Self::TruePosition(position) => position.x.is_finite() && position.y.is_finite(),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
             Self::TrueWall(wall) => wall.start.iter().chain(wall.end.iter()).all(|v| v.is_finite()),
+            Self::PoseMeasurement(measurement) => measurement.is_finite(),
             Self::CameraInfo(info) => [info.fx, info.fy, info.cx, info.cy].iter().all(|v| v.is_finite()),
             Self::CameraMount(pose) => {
                 pose.translation.iter().chain(pose.rotation.coords.iter()).all(|v| v.is_finite())

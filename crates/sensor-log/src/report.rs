@@ -20,7 +20,7 @@ pub struct ReadReport {
     /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, with their number.
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
-    pub end: LogEnd,
+    pub end: LogCompleteness,
     /// Assumptions and other warnings for the user, without repetitions.
     pub warnings: Vec<LogWarning>,
 }
@@ -37,7 +37,7 @@ pub struct LogWarning {
 /// End of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub enum LogEnd {
+pub enum LogCompleteness {
     /// As it should; text logs that are not compressed always do.
     #[default]
     Complete,
@@ -116,7 +116,7 @@ impl ReadReport {
     }
     /// Whether the whole log was read without a problem or warning, up to a regular end.
     pub fn is_clean(&self) -> bool {
-        self.n_problems() == 0 && self.end == LogEnd::Complete && self.warnings.is_empty()
+        self.n_problems() == 0 && self.end == LogCompleteness::Complete && self.warnings.is_empty()
     }
     /// Adds a warning, unless the same one is there.
     pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
@@ -181,7 +181,7 @@ impl fmt::Display for ReadReport {
         for (topic, count) in &self.ignored {
             writeln!(f, "ignored {topic}: {count} messages")?;
         }
-        if self.end != LogEnd::Complete {
+        if self.end != LogCompleteness::Complete {
             writeln!(f, "{}", self.end)?;
         }
         self.warnings.iter().try_for_each(|warning| writeln!(f, "{warning}"))
@@ -220,7 +220,7 @@ impl fmt::Display for RowProblemKind {
     }
 }
 
-impl fmt::Display for LogEnd {
+impl fmt::Display for LogCompleteness {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Complete => f.write_str("the log is complete"),

@@ -28,12 +28,12 @@ impl WriteReport {
 /// robots and unknown codes. TUM stores only poses. The report counts the skipped records.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{RecordData, LogFormat, OpenOptions, Record, Stamp, open, write};
+/// use wayfix_sensor_log::{RecordData, LogFormat, LogOpenOptions, Record, Stamp, open, write};
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("log.mcap");
 /// let record = Record { stamp: Stamp::from_nanoseconds(7), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
 /// write(&path, LogFormat::Mcap, [record.clone()])?;
-/// assert_eq!(open(&path, &OpenOptions::default())?.read_all().0, [record]);
+/// assert_eq!(open(&path, &LogOpenOptions::default())?.read_all().0, [record]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -16,7 +16,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_sensor_log::{
-    CameraInfo, EncodedImage, ImageFormat, LogError, LogFormat, LogSummary, McapWriter, OpenOptions,
+    CameraInfo, EncodedImage, ImageFileFormat, LogError, LogFormat, LogOpenOptions, LogSummary, McapWriter,
     ReadReport, Record, RecordData, RowProblemKind, Stamp, convert, open, topics, write,
 };
 
@@ -50,7 +50,7 @@ fn league_drive(n_frames: u8) -> Vec<Record> {
 }
 
 fn read(path: &Path) -> (Vec<Record>, ReadReport) {
-    open(path, &OpenOptions::default()).unwrap().read_all()
+    open(path, &LogOpenOptions::default()).unwrap().read_all()
 }
 
 #[test]
@@ -68,7 +68,8 @@ fn cameras_round_trip_in_order_with_the_same_bytes() {
     assert_eq!(report.n_problems(), 0, "{report}");
     assert_eq!(report.ignored.into_iter().collect::<Vec<_>>(), []);
 
-    convert(open(at("a.mcap"), &OpenOptions::default()).unwrap(), at("copy.mcap"), LogFormat::Mcap).unwrap();
+    convert(open(at("a.mcap"), &LogOpenOptions::default()).unwrap(), at("copy.mcap"), LogFormat::Mcap)
+        .unwrap();
     assert_eq!(fs::read(at("copy.mcap")).unwrap(), fs::read(at("a.mcap")).unwrap());
 
     let left_out = write(at("poses.tum"), LogFormat::Tum, records).unwrap().left_out;
@@ -84,10 +85,10 @@ fn a_summary_counts_images_by_format_and_size() {
     let Some(Record { stamp, data: RecordData::Image(last) }) = records.last().cloned() else {
         panic!("an image is last")
     };
-    let cut = EncodedImage::new(ImageFormat::Jpeg, &last.bytes[..last.bytes.len() / 2]);
+    let cut = EncodedImage::new(ImageFileFormat::Jpeg, &last.bytes[..last.bytes.len() / 2]);
     records.push(Record { stamp, data: RecordData::Image(cut) });
     write(&path, LogFormat::Mcap, records).unwrap();
-    let summary = LogSummary::of(open(&path, &OpenOptions::default()).unwrap());
+    let summary = LogSummary::of(open(&path, &LogOpenOptions::default()).unwrap());
     assert_eq!(summary.kinds["image"].count, 4);
     let text = summary.to_string();
     assert!(text.contains("  image: 3 jpeg of 16 x 12 pixels, 1 damaged, 0.0 MB\n"), "{text}");
@@ -169,9 +170,9 @@ fn a_camera_or_image_that_would_not_come_back_is_not_written() {
         error.to_string(),
         "camera at 0.000000005 s: 16 x 12 pixels with focal lengths 14.25 and -1 see nothing"
     );
-    let error = refused(RecordData::Image(EncodedImage::new(ImageFormat::Png, &[0xFF, 0xD8, 0xFF][..])));
+    let error = refused(RecordData::Image(EncodedImage::new(ImageFileFormat::Png, &[0xFF, 0xD8, 0xFF][..])));
     assert!(
-        matches!(error, LogError::NotAnImage { what: "image", format: ImageFormat::Png, n_bytes: 3, .. }),
+        matches!(error, LogError::NotAnImage { what: "image", format: ImageFileFormat::Png, n_bytes: 3, .. }),
         "{error}"
     );
 }

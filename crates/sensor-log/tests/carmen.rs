@@ -9,7 +9,8 @@ use std::path::Path;
 use flate2::{Compression, write::GzEncoder};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogEnd, LogFormat, OpenOptions, PoseKind, ReadReport, Record, RecordData, RowProblemKind, open,
+    LogCompleteness, LogFormat, LogOpenOptions, PoseKind, ReadReport, Record, RecordData, RowProblemKind,
+    open,
 };
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
@@ -29,7 +30,7 @@ fn gzip(text: &str) -> Vec<u8> {
 
 fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
     fs::write(path, bytes).unwrap();
-    let log = open(path, &OpenOptions::default()).unwrap();
+    let log = open(path, &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, LogFormat::Carmen);
     log.read_all()
 }
@@ -87,7 +88,7 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
     assert_eq!(second.echoes().count(), 0);
     assert_eq!((report.rows_read, report.n_problems(), report.ignored["NEFF"]), (6, 0, 1));
 
-    let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
+    let options = LogOpenOptions { poses: PoseKind::True, ..Default::default() };
     let log = open(folder.path().join("walk.log"), &options).unwrap();
     assert_eq!(log.filter(|record| matches!(record.data, RecordData::TruePose(_))).count(), 3);
 }
@@ -188,20 +189,20 @@ fn gzip_log_equals_plain_and_truncated_gzip_its_beginning() {
     assert_eq!(n_scans(&plain), 40);
     let packed = gzip(&text);
     let (unpacked, report) = read(&folder.path().join("walk"), &packed);
-    assert!(unpacked == plain && report.n_problems() == 0 && report.end == LogEnd::Complete);
+    assert!(unpacked == plain && report.n_problems() == 0 && report.end == LogCompleteness::Complete);
 
     let half = &packed[..packed.len() - packed.len() / 4];
     let (records, report) = read(&folder.path().join("cut.log.gz"), half);
     assert!((1..40).contains(&n_scans(&records)), "{}", n_scans(&records));
     assert_eq!(records, plain[..records.len()]);
-    assert_eq!(report.end, LogEnd::Truncated { file_bytes: half.len() as u64, missing_bytes: 1 });
+    assert_eq!(report.end, LogCompleteness::Truncated { file_bytes: half.len() as u64, missing_bytes: 1 });
 
     let mut bad_sum = packed.clone();
     let checksum = packed.len() - 8;
     bad_sum[checksum] ^= 1;
     let (records, report) = read(&folder.path().join("sum.log.gz"), &bad_sum);
     assert_eq!(records, plain);
-    assert!(matches!(report.end, LogEnd::Damaged { .. }), "{:?}", report.end);
+    assert!(matches!(report.end, LogCompleteness::Damaged { .. }), "{:?}", report.end);
 }
 
 #[test]
@@ -209,7 +210,7 @@ fn other_text_logs_may_be_compressed_too() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.txt.gz");
     fs::write(&path, gzip("O 1 0 0\nZ 7 1 0\n")).unwrap();
-    let log = open(&path, &OpenOptions::default()).unwrap();
+    let log = open(&path, &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, LogFormat::RangeBearing);
     assert_eq!(log.count(), 2);
 }

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_sensor_log::{OpenOptions, ReadReport, Record, RecordData, open};
+use wayfix_sensor_log::{LogOpenOptions, ReadReport, Record, RecordData, open};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
     let ranges = format!("{range} ").repeat(n_beams);
@@ -15,7 +15,7 @@ fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f
 
 fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
     fs::write(path, bytes).unwrap();
-    open(path, &OpenOptions::default()).unwrap().read_all()
+    open(path, &LogOpenOptions::default()).unwrap().read_all()
 }
 
 fn n_scans(records: &[Record]) -> usize {

@@ -10,8 +10,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    EncodedImage, LogError, LogFormat, OpenOptions, Record, RecordData, RowProblemKind, Stamp, convert, open,
-    write,
+    EncodedImage, LogError, LogFormat, LogOpenOptions, Record, RecordData, RowProblemKind, Stamp, convert,
+    open, write,
 };
 
 /// A picture whose width tells which one it is.
@@ -38,7 +38,7 @@ fn frames_come_in_the_order_of_their_names_at_the_stated_rate() {
         put(folder.path(), name, &picture(width)); // what a file is counts, not how it ends
     }
     fs::write(folder.path().join("boxes.txt"), "1,2,3,4").unwrap();
-    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    let log = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, LogFormat::Images);
     let (records, report) = log.read_all();
     assert_eq!(widths(&records), [1, 2, 9, 10]);
@@ -46,7 +46,7 @@ fn frames_come_in_the_order_of_their_names_at_the_stated_rate() {
     let nanoseconds = |records: &[Record]| records.iter().map(|r| r.stamp.nanoseconds()).collect::<Vec<_>>();
     assert_eq!(nanoseconds(&records), [0, 33_333_333, 66_666_667, 100_000_000]);
 
-    let options = OpenOptions { frame_rate_hz: 12.5, ..Default::default() };
+    let options = LogOpenOptions { frame_rate_hz: 12.5, ..Default::default() };
     let records = open(folder.path(), &options).unwrap().read_all().0;
     assert_eq!(nanoseconds(&records), [0, 80_000_000, 160_000_000, 240_000_000]);
 }
@@ -62,7 +62,7 @@ fn frames_that_cannot_be_read_are_counted_and_leave_their_gap() {
     let whole = EncodedImage::jpeg(8, 8, &[50; 192], 90).unwrap();
     fs::write(at("4.jpg"), &whole.bytes[..whole.bytes.len() - 2]).unwrap();
     fs::create_dir(at("5.png")).unwrap();
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(widths(&records), [2, 6]);
     assert_eq!(records[1].stamp, Stamp::from_nanoseconds(133_333_333), "the fifth file; a folder is none");
     assert_eq!(report.problems[&RowProblemKind::UnreadableImage], 3);
@@ -74,14 +74,14 @@ fn frames_that_cannot_be_read_are_counted_and_leave_their_gap() {
 #[test]
 fn a_folder_without_a_frame_is_an_error_that_says_why() {
     let folder = tempfile::tempdir().unwrap();
-    let at = |options: &OpenOptions| open(folder.path(), options).unwrap_err();
-    let images = OpenOptions { format: Some(LogFormat::Images), ..Default::default() };
-    assert!(matches!(at(&OpenOptions::default()), LogError::IsADirectory { .. }));
+    let at = |options: &LogOpenOptions| open(folder.path(), options).unwrap_err();
+    let images = LogOpenOptions { format: Some(LogFormat::Images), ..Default::default() };
+    assert!(matches!(at(&LogOpenOptions::default()), LogError::IsADirectory { .. }));
     assert!(matches!(at(&images), LogError::Empty { .. }));
     fs::write(folder.path().join("a.png"), "?").unwrap();
     assert!(matches!(at(&images), LogError::NotThisFormat { format: LogFormat::Images, .. }));
     for rate in [0.0, -30.0, f64::NAN, f64::INFINITY, 1e-9] {
-        let error = at(&OpenOptions { frame_rate_hz: rate, ..Default::default() });
+        let error = at(&LogOpenOptions { frame_rate_hz: rate, ..Default::default() });
         assert!(matches!(error, LogError::BadFrameRate { .. }), "{error}");
     }
     assert!(open(folder.path().join("a.png"), &images).is_err(), "a file is no folder");
@@ -93,9 +93,9 @@ fn a_folder_becomes_an_mcap_file_and_keeps_where_it_comes_from() {
     let folder = tempfile::tempdir().unwrap();
     (1..40).for_each(|width| put(folder.path(), &format!("{width:04}.png"), &picture(width)));
     let path = folder.path().join("frames.mcap");
-    convert(open(folder.path(), &OpenOptions::default()).unwrap(), &path, LogFormat::Mcap).unwrap();
-    let from_mcap = open(&path, &OpenOptions::default()).unwrap();
+    convert(open(folder.path(), &LogOpenOptions::default()).unwrap(), &path, LogFormat::Mcap).unwrap();
+    let from_mcap = open(&path, &LogOpenOptions::default()).unwrap();
     assert_eq!(from_mcap.meta().origin, Some(LogFormat::Images));
-    let from_folder = open(folder.path(), &OpenOptions::default()).unwrap();
+    let from_folder = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!(from_mcap.read_all().0, from_folder.read_all().0);
 }

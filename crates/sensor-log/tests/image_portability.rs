@@ -7,7 +7,7 @@
 
 use std::fs;
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_sensor_log::{EncodedImage, ImageFileFormat};
 
 const WITHOUT_VECTOR_INSTRUCTIONS: [(&str, u64); 9] = [
     ("cmyk.jpg", 0x417f_d796_b943_2e8a),
@@ -32,7 +32,7 @@ fn digest(bytes: &[u8]) -> u64 {
 fn jpeg_gives_the_same_bits_as_without_vector_instructions() {
     for (name, expected) in WITHOUT_VECTOR_INSTRUCTIONS {
         let path = format!("{}/tests/images/{name}", env!("CARGO_MANIFEST_DIR"));
-        let image = EncodedImage::new(ImageFormat::Jpeg, fs::read(path).unwrap()).decode_rgb().unwrap();
+        let image = EncodedImage::new(ImageFileFormat::Jpeg, fs::read(path).unwrap()).decode_rgb().unwrap();
         assert_eq!((image.width, image.height), (70, 46), "{name}");
         assert_eq!(digest(&image.pixels), expected, "{name}");
     }

@@ -14,8 +14,8 @@ use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use proptest::prelude::*;
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, McapWriter, OpenOptions, ReadReport, Record, RecordData, RowProblemKind,
-    open, write,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, McapWriter, ReadReport, Record, RecordData,
+    RowProblemKind, open, write,
 };
 
 struct Scratch {
@@ -31,7 +31,7 @@ impl Scratch {
     }
     fn read(&self, bytes: &[u8]) -> Result<(Vec<Record>, ReadReport), LogError> {
         fs::write(&self.path, bytes).unwrap();
-        open(&self.path, &OpenOptions::default()).map(|log| log.read_all())
+        open(&self.path, &LogOpenOptions::default()).map(|log| log.read_all())
     }
 }
 
@@ -71,7 +71,7 @@ fn compressed_and_unchunked_files_read_the_same() {
     for bytes in variants(&records) {
         let (back, report) = scratch.read(&bytes).unwrap();
         assert_eq!(back, records);
-        assert_eq!((report.n_problems(), report.end), (0, LogEnd::Complete));
+        assert_eq!((report.n_problems(), report.end), (0, LogCompleteness::Complete));
     }
 }
 
@@ -88,7 +88,7 @@ fn a_file_cut_anywhere_gives_a_prefix_and_says_what_is_missing() {
                 Ok((prefix, report)) => {
                     assert_eq!(prefix, records[..prefix.len()], "cut at {n_bytes}");
                     assert_eq!(report.n_problems(), 0, "cut at {n_bytes}: {report}");
-                    let LogEnd::Truncated { file_bytes, missing_bytes } = report.end else {
+                    let LogCompleteness::Truncated { file_bytes, missing_bytes } = report.end else {
                         panic!("cut at {n_bytes}: {:?}", report.end);
                     };
                     assert_eq!(file_bytes, n_bytes as u64);
@@ -98,7 +98,7 @@ fn a_file_cut_anywhere_gives_a_prefix_and_says_what_is_missing() {
                     );
                     prefix.len()
                 }
-                Err(LogError::Damaged { end: LogEnd::Truncated { .. }, .. }) => 0,
+                Err(LogError::Damaged { end: LogCompleteness::Truncated { .. }, .. }) => 0,
                 Err(LogError::Empty { .. }) if n_bytes == 0 => 0,
                 Err(LogError::NotThisFormat { .. }) if n_bytes < 8 => 0,
                 Err(other) => panic!("cut at {n_bytes}: {other}"),
@@ -169,7 +169,7 @@ fn lengths_beyond_reason_are_an_error_at_once() {
         bytes.extend(claimed.to_le_bytes());
         bytes.extend([7; 100]);
         let error = Scratch::new().read(&bytes).unwrap_err();
-        assert!(matches!(error, LogError::Damaged { end: LogEnd::Damaged { .. }, .. }), "{error}");
+        assert!(matches!(error, LogError::Damaged { end: LogCompleteness::Damaged { .. }, .. }), "{error}");
     }
 }
 
@@ -196,9 +196,9 @@ fn garbage_with_an_mcap_name_is_refused_by_its_first_bytes() {
     // A gigabyte that takes no room on the disk.
     let file = fs::File::create(&scratch.path).unwrap();
     file.set_len(1 << 30).unwrap();
-    let error = open(&scratch.path, &OpenOptions::default()).unwrap_err();
+    let error = open(&scratch.path, &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(error, LogError::NotThisFormat { format: LogFormat::Mcap, .. }));
-    let error = open(scratch.path.with_extension("absent.mcap"), &OpenOptions::default()).unwrap_err();
+    let error = open(scratch.path.with_extension("absent.mcap"), &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(error, LogError::NotFound { .. }));
 }
 
@@ -278,6 +278,6 @@ proptest! {
         let _ = scratch.read(&with_magic);
         let _ = scratch.read(&bytes);
         let format = Some([LogFormat::Tum, LogFormat::RangeBearing, LogFormat::Utias][name]);
-        let _ = open(&scratch.path, &OpenOptions { format, ..Default::default() }).map(|log| log.read_all());
+        let _ = open(&scratch.path, &LogOpenOptions { format, ..Default::default() }).map(|log| log.read_all());
     }
 }

@@ -11,11 +11,14 @@ mod common;
 use std::io::Cursor;
 
 use proptest::prelude::*;
-use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
+use wayfix_estimation_traits::{
+    Pose2,
+    nalgebra::{Matrix3, Vector2},
+};
 use wayfix_sensor_log::{
-    AckermannDrive, Detection, DetectionTarget, LaserScan, LogEnd, LogError, LogFormat, McapWriter,
-    OpenOptions, PoseKind, Record, RecordData, RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall,
-    Velocity, convert, open, topics, write,
+    AckermannDrive, Detection, DetectionTarget, LaserScan, LogCompleteness, LogError, LogFormat,
+    LogOpenOptions, McapWriter, MeasuredQuantity, PoseKind, PoseMeasurement, Record, RecordData,
+    RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open, topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -87,7 +90,27 @@ fn data() -> impl Strategy<Value = RecordData> {
             RecordData::TrueWall(TrueWall { id, start: Vector2::new(a, b), end: Vector2::new(c, d) })
         }),
         pose().prop_map(RecordData::EstimatedPose),
+        pose_measurement().prop_map(RecordData::PoseMeasurement),
     ]
+}
+
+fn pose_measurement() -> impl Strategy<Value = PoseMeasurement> {
+    let quantity = prop_oneof![
+        (number(), number()).prop_map(|(x, y)| MeasuredQuantity::Position(Vector2::new(x, y))),
+        (number(), number())
+            .prop_map(|(latitude, longitude)| MeasuredQuantity::Geodetic { latitude, longitude }),
+        number().prop_map(MeasuredQuantity::Heading),
+        pose().prop_map(MeasuredQuantity::Pose),
+    ];
+    let covariance = prop::option::of(
+        prop::array::uniform6(number())
+            .prop_map(|[xx, xy, yy, xh, yh, hh]| Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh)),
+    );
+    ("[a-z]{0,5}", quantity, covariance).prop_map(|(frame, quantity, covariance)| PoseMeasurement {
+        frame,
+        quantity,
+        covariance,
+    })
 }
 
 /// Up to `max` records in time order, often several at one stamp.
@@ -135,6 +158,15 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
         RecordData::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
         RecordData::DetectionWidths(widths) => widths.clone(),
         RecordData::TruePosition(position) => vec![position.x, position.y],
+        RecordData::PoseMeasurement(PoseMeasurement { quantity, covariance, .. }) => {
+            let values = match quantity {
+                MeasuredQuantity::Position(position) => vec![position.x, position.y],
+                MeasuredQuantity::Geodetic { latitude, longitude } => vec![*latitude, *longitude],
+                MeasuredQuantity::Heading(heading) => vec![*heading],
+                MeasuredQuantity::Pose(pose) => vec![pose.x(), pose.y(), pose.heading()],
+            };
+            values.into_iter().chain(covariance.iter().flatten().copied()).collect()
+        }
         other => panic!("{other:?}"),
     };
     (
@@ -151,8 +183,8 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.mcap");
         write(&path, LogFormat::Mcap, records.clone()).unwrap();
-        let (back, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
-        prop_assert_eq!(&report.end, &LogEnd::Complete);
+        let (back, report) = open(&path, &LogOpenOptions::default()).unwrap().read_all();
+        prop_assert_eq!(&report.end, &LogCompleteness::Complete);
         prop_assert_eq!(report.n_problems(), 0);
         prop_assert_eq!(back.iter().map(bits).collect::<Vec<_>>(), records.iter().map(bits).collect::<Vec<_>>());
     }
@@ -173,7 +205,7 @@ proptest! {
             .collect();
         prop_assume!(!poses.is_empty());
         write(&path, LogFormat::Tum, poses.clone()).unwrap();
-        let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
+        let options = LogOpenOptions { poses: PoseKind::True, ..Default::default() };
         let (back, _) = open(&path, &options).unwrap().read_all();
         prop_assert_eq!(back.len(), poses.len());
         for (back, pose) in back.iter().zip(&poses) {
@@ -190,7 +222,7 @@ fn a_log_larger_than_a_chunk_comes_back_whole() {
     let path = folder.path().join("log.mcap");
     write(&path, LogFormat::Mcap, records.clone()).unwrap();
     assert!(std::fs::metadata(&path).unwrap().len() > 1 << 20, "several chunks of 256 KiB");
-    let log = open(&path, &OpenOptions::default()).unwrap();
+    let log = open(&path, &LogOpenOptions::default()).unwrap();
     assert_eq!(log.read_all().0, records);
 }
 
@@ -202,7 +234,7 @@ fn range_bearing_writes_its_kinds_and_names_the_rest() {
     let report = write(&path, LogFormat::RangeBearing, records.clone()).unwrap();
     assert_eq!(report.left_out.into_iter().collect::<Vec<_>>(), [("estimated pose", 20), ("velocity", 20)]);
     let back: Vec<RecordData> =
-        open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
+        open(&path, &LogOpenOptions::default()).unwrap().map(|record| record.data).collect();
     let kept: Vec<RecordData> = records
         .into_iter()
         .map(|record| record.data)
@@ -223,7 +255,7 @@ fn consecutive_landmarks_share_a_message_in_order() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
     std::fs::write(&path, &bytes).unwrap();
-    assert_eq!(open(&path, &OpenOptions::default()).unwrap().collect::<Vec<_>>(), records);
+    assert_eq!(open(&path, &LogOpenOptions::default()).unwrap().collect::<Vec<_>>(), records);
 }
 
 #[test]
@@ -236,7 +268,7 @@ fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
         .unwrap();
     writer.point_cloud(topics::TRUE_WALLS, Stamp::default(), topics::WORLD_FRAME, &[[1.0, 2.0]]).unwrap();
     writer.finish().unwrap();
-    let (records, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(&path, &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!((records.len(), report.problems[&RowProblemKind::Inconsistent]), (1, 1));
 }
 
@@ -267,7 +299,7 @@ fn what_cannot_be_stored_is_refused() {
 fn conversion_keeps_the_origin_in_a_truncated_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let open_at = |name| open(at(name), &OpenOptions::default()).unwrap();
+    let open_at = |name| open(at(name), &LogOpenOptions::default()).unwrap();
     write(at("walk.txt"), LogFormat::RangeBearing, common::drive(20)).unwrap();
     convert(open_at("walk.txt"), at("first.mcap"), LogFormat::Mcap).unwrap();
     convert(open_at("first.mcap"), at("second.mcap"), LogFormat::Mcap).unwrap();
@@ -293,10 +325,11 @@ fn a_log_is_not_replaced_while_it_is_read() {
     write(&path, LogFormat::Mcap, common::drive(20)).unwrap();
     let before = std::fs::read(&path).unwrap();
     let again = folder.path().join(".").join("log.mcap");
-    let error = convert(open(&path, &OpenOptions::default()).unwrap(), again, LogFormat::Mcap).unwrap_err();
+    let error =
+        convert(open(&path, &LogOpenOptions::default()).unwrap(), again, LogFormat::Mcap).unwrap_err();
     assert!(matches!(error, LogError::SameFile { .. }));
     assert_eq!(std::fs::read(&path).unwrap(), before);
     let error =
-        convert(open(&path, &OpenOptions::default()).unwrap(), folder.path(), LogFormat::Tum).unwrap_err();
+        convert(open(&path, &LogOpenOptions::default()).unwrap(), folder.path(), LogFormat::Tum).unwrap_err();
     assert!(matches!(error, LogError::NotCreated { .. }), "{error}");
 }

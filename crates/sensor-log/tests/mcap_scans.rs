@@ -11,7 +11,7 @@ use foxglove::messages::{JointState, JointStates, LaserScan as ScanMessage, Pose
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use wayfix_sensor_log::{
-    AckermannDrive, LaserScan, McapWriter, OpenOptions, ReadReport, Record, RecordData, RowProblemKind,
+    AckermannDrive, LaserScan, LogOpenOptions, McapWriter, ReadReport, Record, RecordData, RowProblemKind,
     Stamp, open, topics,
 };
 
@@ -34,7 +34,7 @@ fn read(fill: impl FnOnce(&mut File)) -> (Vec<RecordData>, ReadReport) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
     fs::write(&path, file.into_inner().into_inner()).unwrap();
-    let (records, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(&path, &LogOpenOptions::default()).unwrap().read_all();
     (records.into_iter().map(|record| record.data).collect(), report)
 }
 
@@ -124,6 +124,6 @@ fn scans_of_two_devices_keep_their_own_angles() {
     let path = folder.path().join("log.mcap");
     fs::write(&path, bytes.into_inner()).unwrap();
     let back: Vec<RecordData> =
-        open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
+        open(&path, &LogOpenOptions::default()).unwrap().map(|record| record.data).collect();
     assert_eq!(back, scans);
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    DetectionTarget, OpenOptions, PoseRelation, Record, RecordData, RowProblemKind, Stamp, open,
+    DetectionTarget, LogOpenOptions, PoseRelation, Record, RecordData, RowProblemKind, Stamp, open,
     read_relations,
 };
 
@@ -32,7 +32,7 @@ fn utias_set_7() {
     let Some(folder) = data_folder() else { return };
     // robot, truth rows, odometry rows, measurement rows, different measurement stamps
     for (robot, n_true, n_odometry, n_detections, n_looks) in UTIAS_ROWS {
-        let options = OpenOptions { robot: Some(robot), ..Default::default() };
+        let options = LogOpenOptions { robot: Some(robot), ..Default::default() };
         let (records, report) =
             open(folder.join("utias_mrclam/MRCLAM_Dataset7"), &options).unwrap().read_all();
         assert_eq!(report.n_problems(), 0, "{report}");
@@ -62,7 +62,8 @@ fn utias_set_7() {
 #[test]
 fn victoria_park() {
     let Some(folder) = data_folder() else { return };
-    let (records, report) = open(folder.join("victoria_park"), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) =
+        open(folder.join("victoria_park"), &LogOpenOptions::default()).unwrap().read_all();
     // One fix is more than 30 m from both its neighbours, by a separate program.
     assert_eq!((report.rows_read, report.n_problems()), (61945 + 52974 + 4465, 1), "{report}");
     assert!(in_time_order(&records));
@@ -90,7 +91,7 @@ fn carmen_logs() {
     let Some(folder) = data_folder() else { return };
     for (name, n_scans, n_beams, n_not_later) in CARMEN_ROWS {
         let path = folder.join("carmen").join(format!("{name}-corrected.log.gz"));
-        let (records, report) = open(path, &OpenOptions::default()).unwrap().read_all();
+        let (records, report) = open(path, &LogOpenOptions::default()).unwrap().read_all();
         assert!(in_time_order(&records));
         assert_eq!(
             count(&records, |data| matches!(data, RecordData::Scan(s) if s.ranges.len() == n_beams)),
@@ -127,7 +128,7 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
 #[test]
 fn corrected_carmen_log_has_the_odometry_of_the_raw_log() {
     let Some(folder) = data_folder() else { return };
-    let read = |name: &str| open(folder.join(name), &OpenOptions::default()).unwrap().read_all().0;
+    let read = |name: &str| open(folder.join(name), &LogOpenOptions::default()).unwrap().read_all().0;
     let carmen = increments(&read("carmen/intel-corrected.log.gz"));
     let raw = increments(&read("intel_raw/intel_gfs.json.gz"));
     let corrected = increments(&read("intel_raw/intel_corrected.json.gz"));
@@ -145,7 +146,7 @@ fn intel_relations_fit_the_corrected_poses() {
     let (relations, report) = read_relations(folder.join("intel_raw/intel.relations")).unwrap();
     assert_eq!(report.n_problems(), 0);
     let mean_error = |name: &str| {
-        let log = open(folder.join("intel_raw").join(name), &OpenOptions::default()).unwrap();
+        let log = open(folder.join("intel_raw").join(name), &LogOpenOptions::default()).unwrap();
         let poses: BTreeMap<Stamp, Pose2<f64>> = log
             .filter_map(|record| match record.data {
                 RecordData::EstimatedPose(pose) => Some((record.stamp, pose)),
@@ -179,7 +180,7 @@ fn simulated_range_bearing_logs() {
     let Some(folder) = data_folder() else { return };
     for (name, n_landmarks) in [("slam_100", 100), ("slam_200", 200), ("slam_400", 400)] {
         let path = folder.join("range_bearing").join(name).with_extension("txt");
-        let (records, report) = open(path, &OpenOptions::default()).unwrap().read_all();
+        let (records, report) = open(path, &LogOpenOptions::default()).unwrap().read_all();
         assert_eq!(report.n_problems(), 0, "{report}");
         assert!(in_time_order(&records));
         assert_eq!(count(&records, |data| matches!(data, RecordData::TrueLandmark(_))), n_landmarks);

@@ -6,7 +6,8 @@ use std::fs;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, RowProblemKind,
+    open,
 };
 
 fn entry(seconds: &str, n_beams: usize, x: &str) -> String {
@@ -22,7 +23,7 @@ fn read(text: &str) -> Result<(Vec<Record>, ReadReport), LogError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scans.json");
     fs::write(&path, text).unwrap();
-    let log = open(&path, &OpenOptions::default())?;
+    let log = open(&path, &LogOpenOptions::default())?;
     assert_eq!(log.meta().format, LogFormat::ScanJson);
     Ok(log.read_all())
 }
@@ -64,18 +65,18 @@ fn what_comes_before_a_damage_is_read() {
     let cut = &text[..text.len() - 100];
     let (records, report) = read(cut).unwrap();
     assert_eq!(scans(&records), 3);
-    assert_eq!(report.end, LogEnd::Truncated { file_bytes: cut.len() as u64, missing_bytes: 1 });
+    assert_eq!(report.end, LogCompleteness::Truncated { file_bytes: cut.len() as u64, missing_bytes: 1 });
 
     let position = text.find("\"3\"").unwrap();
     let bad = format!("{}?{}", &text[..position], &text[position + 1..]);
     let (records, report) = read(&bad).unwrap();
     assert_eq!(scans(&records), 2);
-    let LogEnd::Damaged { byte, .. } = report.end else { panic!("{:?}", report.end) };
+    let LogCompleteness::Damaged { byte, .. } = report.end else { panic!("{:?}", report.end) };
     assert_eq!(byte, position as u64 + 1);
 
     assert!(matches!(read("{\"a\": 1}"), Err(LogError::Damaged { .. })));
     assert!(matches!(read("{\"map\": {}}"), Err(LogError::Empty { .. })));
-    assert!(matches!(read("{"), Err(LogError::Damaged { end: LogEnd::Truncated { .. }, .. })));
+    assert!(matches!(read("{"), Err(LogError::Damaged { end: LogCompleteness::Truncated { .. }, .. })));
     assert!(matches!(read(&"{\"map\":".repeat(5000)), Err(LogError::Damaged { .. })));
 }
 
@@ -93,7 +94,7 @@ fn nan_and_infinity_in_json_are_missing_beams() {
     assert_eq!(scans.iter().map(|scan| scan.echoes().count()).collect::<Vec<_>>(), [176, 180, 180]);
     assert_eq!((report.rows_read, report.n_problems()), (3, 1));
     assert_eq!((report.examples[0].row, report.examples[0].kind), (3, RowProblemKind::NotFinite));
-    assert_eq!(report.end, LogEnd::Complete);
+    assert_eq!(report.end, LogCompleteness::Complete);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport, Record, open};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport, Record, open};
 
 fn write(folder: &Path, name: &str, text: &str) {
     fs::write(folder.join(name), text).expect("the scratch folder is writable");
@@ -12,7 +12,7 @@ fn write(folder: &Path, name: &str, text: &str) {
 /// Opens a text that is written as `name`.
 fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, ReadReport) {
     fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
-    let log = open(folder.join(name), &OpenOptions::default()).expect("a log of a known format");
+    let log = open(folder.join(name), &LogOpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;
     let (records, report) = log.read_all();
     (format, records, report)
@@ -44,14 +44,14 @@ fn sets_of_files_with_byte_order_marks_are_read() {
     let mark = "\u{feff}";
     write(folder.path(), "odometry.csv", &format!("{mark}t_s,speed_mps,steering_rad\r\n1,0.5,0\r\n"));
     write(folder.path(), "trees.csv", &format!("{mark}t_s,range_m,bearing_rad,diameter_m\r\n1,9,1,0.5\r\n"));
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!((records.len(), report.n_problems()), (3, 0));
 
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "Barcodes.dat", &format!("{mark}# Subject Barcode\n6 72\n"));
     write(folder.path(), "Robot1_Odometry.dat", &format!("{mark}100 0.1 0\n"));
     write(folder.path(), "Robot1_Measurement.dat", &format!("{mark}100 72 1 0.5\n"));
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!((records.len(), report.n_problems()), (2, 0));
 }
 
@@ -64,7 +64,7 @@ fn utf_16_is_named_with_the_way_out() {
     let marked = |mark: [u8; 2], text: &[u8]| [&mark, text].concat();
     for bytes in [little.clone(), big.clone(), marked([0xff, 0xfe], &little), marked([0xfe, 0xff], &big)] {
         fs::write(folder.path().join("walk.txt"), bytes).unwrap();
-        let error = open(folder.path().join("walk.txt"), &OpenOptions::default()).unwrap_err().to_string();
+        let error = open(folder.path().join("walk.txt"), &LogOpenOptions::default()).unwrap_err().to_string();
         assert!(error.contains("UTF-16") && error.contains("iconv"), "{error}");
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Detection, DetectionTarget, LogError, LogFormat, OpenOptions, PoseKind, ReadReport, Record, RecordData,
-    RowProblemKind, Stamp, TrueLandmark, Velocity, open,
+    Detection, DetectionTarget, LogError, LogFormat, LogOpenOptions, PoseKind, ReadReport, Record,
+    RecordData, RowProblemKind, Stamp, TrueLandmark, Velocity, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -36,7 +36,7 @@ fn detection(target: DetectionTarget, range: f64, bearing: f64) -> Detection {
 fn utias_files_are_merged_by_time_and_codes_become_subjects() {
     let folder = tempfile::tempdir().unwrap();
     utias_set(folder.path(), &[2]);
-    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    let log = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!((log.meta().format, log.meta().robot), (LogFormat::Utias, Some(2)));
     let (records, report) = log.read_all();
     let look = vec![
@@ -64,7 +64,7 @@ fn utias_files_are_merged_by_time_and_codes_become_subjects() {
 fn a_set_of_several_robots_asks_which_and_names_them() {
     let folder = tempfile::tempdir().unwrap();
     utias_set(folder.path(), &[3, 1]);
-    let open_robot = |robot| open(folder.path(), &OpenOptions { robot, ..Default::default() });
+    let open_robot = |robot| open(folder.path(), &LogOpenOptions { robot, ..Default::default() });
     assert!(matches!(open_robot(None), Err(LogError::RobotNeeded { present, .. }) if present == [1, 3]));
     assert!(
         matches!(open_robot(Some(2)), Err(LogError::NoSuchRobot { robot: 2, present, .. }) if present == [1, 3])
@@ -78,7 +78,8 @@ fn range_bearing_lines_make_steps_of_a_tenth_of_a_second() {
     let lines =
         "# two steps\nL 4 1 2\nP 0 0 0\nO 0 0 0\nZ 4 2 0.5\nZ -1 3 1\nP 1 0 0\nO 1 0 0\nO 1 0 0\nZ ? 1 1\n";
     write(folder.path(), "walk.log", lines);
-    let (records, report) = open(folder.path().join("walk.log"), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) =
+        open(folder.path().join("walk.log"), &LogOpenOptions::default()).unwrap().read_all();
     let step = |x| RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
     let look = vec![
         detection(DetectionTarget::Landmark(4), 2.0, 0.5),
@@ -108,7 +109,7 @@ fn tum_headings_come_from_the_quaternion_for_both_signs() {
         -sin, -cos, -sin
     );
     write(folder.path(), "poses.txt", &rows);
-    let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
+    let options = LogOpenOptions { poses: PoseKind::True, ..Default::default() };
     let (records, report) = open(folder.path().join("poses.txt"), &options).unwrap().read_all();
     let headings: Vec<f64> = records
         .iter()
@@ -131,7 +132,8 @@ fn every_kind_of_bad_row_is_counted_and_none_stops_the_reading() {
     let mut bytes = format!("O 1 0 0\nO 1 0\nO 1 0 inf\nQ 1 2 3\nZ x 1 1\n{long}\n").into_bytes();
     bytes.extend(b"O \xff\xfe 1 1\nO 2 0 0\n");
     fs::write(folder.path().join("bad.txt"), bytes).unwrap();
-    let (records, report) = open(folder.path().join("bad.txt"), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) =
+        open(folder.path().join("bad.txt"), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records.len(), 2);
     let rows: Vec<u64> = report.examples.iter().map(|problem| problem.row).collect();
     assert_eq!(rows, [2, 3, 4, 5, 6, 7]);
@@ -145,7 +147,7 @@ fn every_kind_of_bad_row_is_counted_and_none_stops_the_reading() {
 fn the_report_names_the_first_twenty_and_counts_the_rest() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "bad.txt", &format!("O 1 0 0\n{}", "O 1 0\n".repeat(50)));
-    let (_, report) = open(folder.path().join("bad.txt"), &OpenOptions::default()).unwrap().read_all();
+    let (_, report) = open(folder.path().join("bad.txt"), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!((report.n_problems(), report.examples.len()), (50, 20));
     assert!(report.to_string().contains("… and 30 more"));
 }
@@ -155,7 +157,7 @@ fn what_cannot_be_opened_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let fails = |name: &str, format| {
-        open(at(name), &OpenOptions { format, ..Default::default() }).expect_err("must not open")
+        open(at(name), &LogOpenOptions { format, ..Default::default() }).expect_err("must not open")
     };
     write(folder.path(), "empty.txt", "# nothing\n\n");
     write(folder.path(), "letter.txt", "Dear sir,\n");
@@ -177,7 +179,7 @@ fn what_cannot_be_opened_says_why() {
 /// Opens a text that is written as `name`.
 fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, ReadReport) {
     fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
-    let log = open(folder.join(name), &OpenOptions::default()).expect("a log of a known format");
+    let log = open(folder.join(name), &LogOpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;
     let (records, report) = log.read_all();
     (format, records, report)
@@ -197,7 +199,7 @@ fn a_utias_row_years_off_is_left_out_and_counted() {
     write(folder.path(), "Robot1_Groundtruth.dat", &rows(|t| format!("{t} 0 0 0\n")).concat());
     write(folder.path(), "Robot1_Odometry.dat", &odometry.concat());
     write(folder.path(), "Robot1_Measurement.dat", &detections.concat());
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records.first().map(|record| record.stamp.seconds()), Some(1_288_971_842.0));
     assert_eq!(records.last().map(|record| record.stamp.seconds()), Some(1_288_971_850.0));
     assert_eq!(report.problems[&RowProblemKind::BadStamp], 2);

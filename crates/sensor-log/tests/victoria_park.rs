@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, OpenOptions, Record, RecordData,
-    RowProblemKind, Stamp, TruePosition, open,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, LogOpenOptions, MeasuredQuantity,
+    PoseMeasurement, Record, RecordData, RowProblemKind, Stamp, TruePosition, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -27,7 +27,7 @@ fn at(milliseconds: u64, data: RecordData) -> Record {
 fn the_three_files_are_merged_and_bearings_turned_ahead() {
     let folder = tempfile::tempdir().unwrap();
     set(folder.path());
-    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    let log = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, LogFormat::VictoriaPark);
     let (records, report) = log.read_all();
     let tree = |range, bearing| Detection { target: DetectionTarget::Unlabelled, range, bearing };
@@ -51,7 +51,7 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
     write(folder.path(), "odometry.csv", rows);
     let jump = "t_s,x_m,y_m\n1,0,0\n2,0,100\n3,1,0\n";
     write(folder.path(), "gps.csv", jump);
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     let count = |is: fn(&RecordData) -> bool| records.iter().filter(|record| is(&record.data)).count();
     assert_eq!(count(|data| matches!(data, RecordData::Ackermann(_))), 3);
     assert_eq!(count(|data| matches!(data, RecordData::TruePosition(_))), 2);
@@ -71,11 +71,32 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
 }
 
 #[test]
+fn a_fix_with_a_sigma_is_a_measurement_and_no_truth() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    let rows = "t_s,x_m,y_m,sigma_m\n1,-67.5,-41.75,\n2,-60,-40,5.3\n3,500,0,5.3\n4,-50,-40,\n5,0,0,far\n";
+    write(folder.path(), "gps.csv", rows);
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
+    let measured = records.iter().filter_map(|record| match &record.data {
+        RecordData::PoseMeasurement(measured) => Some(measured.clone()),
+        _ => None,
+    });
+    let measured: Vec<PoseMeasurement> = measured.collect();
+    assert_eq!(measured.len(), 2, "a filter gates the jump, not the reader");
+    let first = &measured[0];
+    assert_eq!(first.quantity, MeasuredQuantity::Position([-60.0, -40.0].into()));
+    assert_eq!((first.frame.as_str(), first.covariance.unwrap().m11), ("world", 5.3 * 5.3));
+    let truths = records.iter().filter(|record| matches!(record.data, RecordData::TruePosition(_)));
+    assert_eq!(truths.count(), 2);
+    assert_eq!(report.problems.get(&RowProblemKind::NotANumber), Some(&1));
+}
+
+#[test]
 fn gps_may_be_missing_the_other_files_not() {
     let folder = tempfile::tempdir().unwrap();
     set(folder.path());
     fs::remove_file(folder.path().join("gps.csv")).unwrap();
-    let options = OpenOptions { format: Some(LogFormat::VictoriaPark), ..Default::default() };
+    let options = LogOpenOptions { format: Some(LogFormat::VictoriaPark), ..Default::default() };
     assert_eq!(open(folder.path(), &options).unwrap().count(), 4);
     let file = open(folder.path().join("trees.csv"), &options).unwrap_err();
     assert!(matches!(file, LogError::NotThisFormat { format: LogFormat::VictoriaPark, .. }));
@@ -92,7 +113,7 @@ fn a_fifth_column_says_which_tree_it_is_where_somebody_knows() {
     set(folder.path());
     let labelled = "t_s,range_m,bearing_rad,diameter_m,landmark\n1.025,20,1.0,0.3,7\n1.025,10,2.5,0.4,\n1.025,9,2.5,0.4,oak\n";
     write(folder.path(), "trees.csv", labelled);
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     let look = records.iter().find_map(|record| match &record.data {
         RecordData::Detections(look) => {
             Some(look.iter().map(|detection| detection.target).collect::<Vec<_>>())

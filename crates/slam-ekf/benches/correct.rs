@@ -8,7 +8,8 @@ use std::hint::black_box;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, RangeBearing, RangeBearingSensor, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, LandmarkModel, Observation, RangeBearing, RangeBearingSensor,
+    SlamParams,
 };
 
 /// Landmarks in the map and seen in one look, as in the three `range_bearing` logs.
@@ -21,7 +22,7 @@ fn main() {
         let (mut slam, look) = map(n_landmarks, n_seen);
         let calls = 3_000_000 / (n_landmarks * n_landmarks * n_seen) + 3;
         let seconds = best_of(15, calls, || {
-            slam.update(&look, &mut KnownIds).expect("one association an observation").n_accepted()
+            slam.update(&look, &mut KnownIdAssociation).expect("one association an observation").n_accepted()
         });
         println!("bench\tjoint correction {n_landmarks}/{n_seen}\twayfix\t{:.1}", seconds * 1e9);
         let rate = multiply_adds(3 + 2 * n_landmarks, 2 * n_seen) / (seconds * 1e9);
@@ -54,7 +55,7 @@ fn map(n_landmarks: usize, n_seen: usize) -> (EkfSlam<RangeBearingSensor>, Vec<O
         measurement: sensor.expected(&start, &place(i)),
     };
     let all: Vec<_> = (0..n_landmarks).map(observation).collect();
-    slam.update(&all, &mut KnownIds).expect("one association an observation");
+    slam.update(&all, &mut KnownIdAssociation).expect("one association an observation");
     let look = all.into_iter().step_by(n_landmarks / n_seen).take(n_seen).collect();
     (slam, look)
 }

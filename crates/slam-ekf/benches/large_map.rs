@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    CovarianceUpdate, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, OdometryMotion,
+    CovarianceUpdate, EkfSlam, KnownIdAssociation, LandmarkId, LandmarkModel, Observation, OdometryMotion,
     RangeBearing, RangeBearingSensor, SlamParams,
 };
 
@@ -74,7 +74,7 @@ fn run(world: &World, map: CovarianceUpdate, steps: &[Step]) -> Vec<f64> {
         #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
         let start = std::time::Instant::now();
         slam.predict(&motion, &step.increment).expect("a finite increment");
-        slam.update(&step.look, &mut KnownIds).expect("one association an observation");
+        slam.update(&step.look, &mut KnownIdAssociation).expect("one association an observation");
         start.elapsed().as_secs_f64()
     };
     steps.iter().map(&mut take).collect()

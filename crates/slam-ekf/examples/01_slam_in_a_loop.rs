@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, Observation, OdometryMotion, RangeBearing, RangeBearingSensor, SlamError,
-    SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, Observation, OdometryMotion, RangeBearing, RangeBearingSensor,
+    SlamError, SlamParams,
 };
 
 fn main() -> Result<(), SlamError> {
@@ -23,7 +23,7 @@ fn main() -> Result<(), SlamError> {
     let mut slam = EkfSlam::new(sensor, SlamParams::default(), Pose2::new(0.0, 0.0, 0.0))?;
 
     // 3. Say how sightings find their landmark: by their numbers here, by `NearestNeighbour` when there are none.
-    let mut association = KnownIds;
+    let mut association = KnownIdAssociation;
 
     let mut by_odometry = Pose2::new(0.0, 0.0, 0.0);
     for _ in 0..160 {

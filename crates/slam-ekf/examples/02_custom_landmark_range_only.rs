@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, LandmarkModel, NewLandmark, Observation, ObservationOutcome,
+    EkfSlam, KnownIdAssociation, LandmarkId, LandmarkModel, NewLandmark, Observation, ObservationOutcome,
     OdometryMotion, SlamError, SlamParams, laws,
 };
 
@@ -111,7 +111,7 @@ fn listen(
     let mut heard: Vec<_> =
         beacons.iter().enumerate().map(|(i, beacon)| range(LandmarkId(i as u32), beacon)).collect();
     heard.push(range(UNPLANNED, &Vector2::new(0.0, 12.0)));
-    let report = slam.update(&heard, &mut KnownIds)?;
+    let report = slam.update(&heard, &mut KnownIdAssociation)?;
     assert_eq!(report.outcomes.last(), Some(&ObservationOutcome::Unusable));
     Ok(())
 }

@@ -27,7 +27,7 @@ pub struct Observation<Z> {
 
 /// A kind of landmark and its measurement model: the one trait to implement for a new kind.
 ///
-/// $`z = h(x_r, m) ⊞ v,\; v ∼ N(0, R)`$, and backwards $`m = g(x_r, z)`$.
+/// $`z = h(x_r, m) ⊞ v,\; v ∼ N(0, R)`$, and backwards $`m = g(x_r, z)`$. [Andrade-Cetto 2005, Eq. 2]
 ///
 /// **Laws**: the Jacobians are the derivatives of [`expected`](Self::expected) in tangent coordinates (body frame for the robot);
 /// [`noise`](Self::noise) is symmetric positive definite; `expected(robot, initialize(robot, z).landmark)` is `z` for every `z` of the

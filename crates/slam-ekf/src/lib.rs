@@ -19,7 +19,7 @@
 //! points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
 //! `examples/01_slam_in_a_loop.rs` is a whole filter in six steps.
 //!
-//! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]
+//! [Andrade-Cetto 2005, Sec. 2; Dissanayake et al. 2001]
 //!
 //! [predict]: EkfSlam::predict
 
@@ -37,24 +37,28 @@ mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{
-    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds, NearestNeighbour,
-    NearestNeighbourParams,
+    AnyAssociation, Association, DataAssociation, JointCompatibility, JointCompatibilityParams,
+    KnownIdAssociation, NearestNeighbour, NearestNeighbourParams,
 };
 pub use error::SlamError;
 pub use filter::{
-    CovarianceUpdate, EkfSlam, LandmarkConfirmationParams, LandmarkEstimate, LandmarkMergingParams,
-    LinearizationPoint, OutlierRule, PredictedMeasurement, SlamParams, UpdateOrder,
+    AnchorError, AnchorParams, CovarianceUpdate, EkfSlam, ExpectedLandmarks, LandmarkConfirmationParams,
+    LandmarkEstimate, LandmarkMergingParams, LinearizationPoint, OutlierRule, PredictedMeasurement,
+    SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
-    DriftingPoseSensor, MonobotMotion, MonobotSensor, MotionWithRangeScale, MountedSensor, OdometryMotion,
-    PLANAR_SYMMETRIES, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
-    RelativePosition, RelativePositionSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, ExternalError, ExternalParams,
+    HeadingDriftSensor, HeadingSensor, LineDistanceSensor, LocalPlane, MapMeasurement, MonobotMotion,
+    MotionStatistics, MotionWithHeadingDrift, MotionWithRangeScale, MountedSensor, MovedSensor,
+    OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot, PoseSensor, PoseWithHeadingDrift, PoseWithRangeScale,
+    PositionSensor, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, RelativePosition,
+    RelativePositionSensor, SensorWithHeadingDrift, SequentialMotion, UnknownMotion, VelocityControl,
+    VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};
-pub use outcome::{LandmarkMerge, ObservationOutcome, UpdateReport};
+pub use outcome::{LandmarkMerge, ObservationOutcome, RobotInnovation, UpdateReport};
 pub use snapshot::{SavedLandmark, SavedRetiredLandmark, SlamSnapshot};
 
 /// The matrix library of every public signature.

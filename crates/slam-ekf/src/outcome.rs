@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, allocator::Allocator};
+use nalgebra::{DMatrix, DefaultAllocator, allocator::Allocator};
 use wayfix_estimation_traits::Manifold;
 
 use crate::{Innovation, LandmarkId};
@@ -52,6 +52,26 @@ where
     Unusable,
 }
 
+impl<Z: Manifold<Scalar = f64>> ObservationOutcome<Z>
+where
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
+{
+    /// Its name in logs and reports.
+    pub fn event_name(&self) -> &'static str {
+        match self {
+            Self::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "observation_downweighted",
+            Self::Accepted { .. } => "observation_accepted",
+            Self::Rejected { .. } => "observation_rejected_by_gate",
+            Self::Initialized { .. } => "new_landmark",
+            Self::Restarted { .. } => "tentative_landmark_restarted",
+            Self::Ambiguous => "observation_neither_known_nor_new",
+            Self::Unlabelled => "observation_without_identity",
+            Self::Duplicate { .. } => "observation_duplicate",
+            Self::Unusable => "observation_unusable",
+        }
+    }
+}
+
 /// The outcome of every observation of a step, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UpdateReport<Z: Manifold<Scalar = f64>>
@@ -71,6 +91,17 @@ pub struct LandmarkMerge {
     pub kept: LandmarkId,
     /// The one that was removed.
     pub removed: LandmarkId,
+}
+
+/// The innovation of a measurement of the robot alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotInnovation {
+    /// Normalized innovation squared.
+    pub nis: f64,
+    /// $`H`$ by the robot's tangent coordinates.
+    pub jacobian: DMatrix<f64>,
+    /// $`S`$: the innovation covariance.
+    pub covariance: DMatrix<f64>,
 }
 
 impl<Z: Manifold<Scalar = f64>> UpdateReport<Z>

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_slam_ekf::{
-    CovarianceUpdate, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, Observation,
+    CovarianceUpdate, EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, Observation,
     ObservationOutcome, OdometryMotion, OutlierRule, RangeBearing, RangeBearingSensor, SlamParams,
     UpdateOrder,
 };
@@ -78,7 +78,7 @@ fn lap(params: SlamParams) -> String {
             let slam = &mut slams[which];
             change_map(slam, k, &landmarks);
             slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
-            slam.update(&observations, &mut KnownIds).unwrap().outcomes
+            slam.update(&observations, &mut KnownIdAssociation).unwrap().outcomes
         });
         assert_eq!(kinds(&by_full), kinds(&by_compressed), "step {k}");
         seen += &kinds(&by_full).join("\n");
@@ -127,8 +127,10 @@ fn change_map(slam: &mut Slam, step: usize, landmarks: &[[f64; 2]]) {
 
 #[test]
 fn nobody_can_tell_a_compressed_map_from_a_full_one() {
-    let confirmation =
-        LandmarkConfirmationParams { max_missed: Some(6), ..LandmarkConfirmationParams::default() };
+    let confirmation = LandmarkConfirmationParams {
+        max_consecutive_misses: Some(6),
+        ..LandmarkConfirmationParams::default()
+    };
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for outliers in [OutlierRule::Downweight, OutlierRule::Reject] {
             let seen = lap(SlamParams {

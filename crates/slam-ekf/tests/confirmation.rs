@@ -3,8 +3,8 @@
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, LandmarkModel, Observation, RangeBearing,
-    RangeBearingSensor, SlamError, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, LandmarkModel, Observation,
+    RangeBearing, RangeBearingSensor, SlamError, SlamParams,
 };
 
 /// Sees 5 m far and 1 rad to either side.
@@ -24,7 +24,7 @@ fn look(slam: &mut EkfSlam<RangeBearingSensor>, seen: &[(u32, f64, f64)]) {
         measurement: RangeBearing::new(*range, *bearing),
     };
     let seen: Vec<_> = seen.iter().map(observation).collect();
-    slam.update(&seen, &mut KnownIds).unwrap();
+    slam.update(&seen, &mut KnownIdAssociation).unwrap();
 }
 
 /// After how many empty looks a landmark is gone; `None` when a hundred leave it.
@@ -56,21 +56,27 @@ fn a_sensor_should_see_what_is_within_reach_and_view() {
 
 #[test]
 fn tentative_landmark_survives_the_allowed_misses() {
-    for max_missed in [0, 1, 5] {
+    for max_consecutive_misses in [0, 1, 5] {
         let mut slam = slam(LandmarkConfirmationParams {
-            max_missed: Some(max_missed),
+            max_consecutive_misses: Some(max_consecutive_misses),
             ..LandmarkConfirmationParams::default()
         });
         look(&mut slam, &[AHEAD]);
-        assert_eq!(looks_survived(&mut slam, 1), Some(max_missed + 1), "max_missed {max_missed}");
+        assert_eq!(
+            looks_survived(&mut slam, 1),
+            Some(max_consecutive_misses + 1),
+            "max_consecutive_misses {max_consecutive_misses}"
+        );
     }
 }
 
 #[test]
 fn looks_that_could_not_show_a_landmark_do_not_count() {
     for hidden in [(1, 5.5, 0.0), (1, 3.0, 1.2)] {
-        let mut slam =
-            slam(LandmarkConfirmationParams { max_missed: Some(2), ..LandmarkConfirmationParams::default() });
+        let mut slam = slam(LandmarkConfirmationParams {
+            max_consecutive_misses: Some(2),
+            ..LandmarkConfirmationParams::default()
+        });
         look(&mut slam, &[hidden]);
         assert_eq!(looks_survived(&mut slam, 1), None, "{hidden:?}");
     }
@@ -80,7 +86,7 @@ fn looks_that_could_not_show_a_landmark_do_not_count() {
 fn a_sighting_renews_the_patience() {
     let mut slam = slam(LandmarkConfirmationParams {
         min_detections: 3,
-        max_missed: Some(2),
+        max_consecutive_misses: Some(2),
         ..LandmarkConfirmationParams::default()
     });
     look(&mut slam, &[AHEAD]);
@@ -93,7 +99,7 @@ fn a_sighting_renews_the_patience() {
 #[test]
 fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
     let confirmation = LandmarkConfirmationParams {
-        max_missed: Some(2),
+        max_consecutive_misses: Some(2),
         min_detection_rate: 0.5,
         ..LandmarkConfirmationParams::default()
     };
@@ -109,7 +115,7 @@ fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
 #[test]
 fn a_share_is_not_judged_before_patience_is_out() {
     let confirmation = LandmarkConfirmationParams {
-        max_missed: Some(7),
+        max_consecutive_misses: Some(7),
         min_detection_rate: 1.0,
         ..LandmarkConfirmationParams::default()
     };
@@ -123,8 +129,10 @@ fn a_share_is_not_judged_before_patience_is_out() {
 fn confirmed_landmark_stays_without_share_or_patience() {
     let share_only =
         LandmarkConfirmationParams { min_detection_rate: 1.0, ..LandmarkConfirmationParams::default() };
-    let patience_only =
-        LandmarkConfirmationParams { max_missed: Some(1), ..LandmarkConfirmationParams::default() };
+    let patience_only = LandmarkConfirmationParams {
+        max_consecutive_misses: Some(1),
+        ..LandmarkConfirmationParams::default()
+    };
     for confirmation in [share_only, patience_only] {
         let mut slam = slam(confirmation);
         look(&mut slam, &[AHEAD]);
@@ -136,7 +144,7 @@ fn confirmed_landmark_stays_without_share_or_patience() {
 #[test]
 fn an_anchor_stays_whatever_is_seen() {
     let confirmation = LandmarkConfirmationParams {
-        max_missed: Some(0),
+        max_consecutive_misses: Some(0),
         min_detection_rate: 1.0,
         ..LandmarkConfirmationParams::default()
     };

@@ -10,7 +10,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, LinearizationPoint, OdometryMotion, RangeBearingSensor, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, LinearizationPoint, OdometryMotion, RangeBearingSensor,
+    SlamParams,
 };
 
 const N_RUNS: u64 = 60;
@@ -35,7 +36,7 @@ fn average_nees(belief: f64) -> f64 {
         let mut slam = EkfSlam::new(sensor, SlamParams::default(), common::start()).unwrap();
         for step in &steps {
             slam.predict(&motion, &step.increment).unwrap();
-            slam.update(&step.observations, &mut KnownIds).unwrap();
+            slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
         }
         let error = slam.robot().local(&steps.last().unwrap().truth);
         error.dot(&Cholesky::new(slam.robot_covariance()).unwrap().solve(&error))
@@ -84,7 +85,7 @@ fn share_outside_on_a_long_loop(linearization: LinearizationPoint, n_anchors: us
         }
         for (step, nees) in world.drive(N_STEPS, &landmarks, &mut rng).iter().zip(&mut nees) {
             slam.predict(&motion, &step.increment).unwrap();
-            slam.update(&step.observations, &mut KnownIds).unwrap();
+            slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
             let error = own_error(linearization, slam.robot(), &step.truth);
             *nees +=
                 error.dot(&Cholesky::new(slam.robot_covariance()).unwrap().solve(&error)) / N_RUNS as f64;

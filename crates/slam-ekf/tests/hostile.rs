@@ -8,7 +8,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 use wayfix_slam_ekf::{
-    CovarianceUpdate, DataAssociation, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId,
+    CovarianceUpdate, DataAssociation, EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId,
     LandmarkModel, NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, ObservationOutcome,
     OdometryMotion, OutlierRule, RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
 };
@@ -262,8 +262,10 @@ fn is_never_poisoned(map: CovarianceUpdate, rules: &[OutlierRule], mut seed: u64
     let mut tallies = Vec::new();
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for &outliers in rules {
-            let confirmation =
-                LandmarkConfirmationParams { max_missed: Some(5), ..LandmarkConfirmationParams::default() };
+            let confirmation = LandmarkConfirmationParams {
+                max_consecutive_misses: Some(5),
+                ..LandmarkConfirmationParams::default()
+            };
             let params = SlamParams {
                 update_order: order,
                 outlier_rule: outliers,
@@ -271,7 +273,7 @@ fn is_never_poisoned(map: CovarianceUpdate, rules: &[OutlierRule], mut seed: u64
                 covariance_update: map,
                 ..SlamParams::default()
             };
-            tallies.push(ill_treat(params, || KnownIds, seed));
+            tallies.push(ill_treat(params, || KnownIdAssociation, seed));
             let nearest = || NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
             tallies.push(ill_treat(params, nearest, seed + 1));
             seed += 2;

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredGate;
 use wayfix_slam_ekf::{
-    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
+    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIdAssociation,
     LandmarkId, LandmarkModel, NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome,
     RangeBearing, RangeBearingSensor, SlamError, SlamParams,
 };
@@ -132,7 +132,7 @@ fn small_looks_are_paired_as_by_trying_everything() {
                 measurement: see(&true_pose, &landmarks[k as usize], &mut rng),
             })
             .collect();
-        slam.update(&first, &mut KnownIds).unwrap();
+        slam.update(&first, &mut KnownIdAssociation).unwrap();
         let looks: Vec<_> = (0..rng.random_range(1..5))
             .map(|_| {
                 let target =

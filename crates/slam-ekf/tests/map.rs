@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_slam_ekf::{
-    Association, DataAssociation, EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId,
+    Association, DataAssociation, EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId,
     NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome, OdometryMotion, OutlierRule,
     RangeBearing, RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams,
 };
@@ -40,7 +40,7 @@ fn uncertainty_after_a_lap(anchored: bool, n_steps: usize) -> f64 {
     }
     for step in &steps {
         slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
-        slam.update(&step.observations, &mut KnownIds).unwrap();
+        slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
     }
     slam.robot_covariance().fixed_view::<2, 2>(0, 0).trace()
 }
@@ -68,13 +68,13 @@ fn the_estimate_moves_to_the_truth_with_both_sensors() {
         )));
         by_range.predict(&OdometryMotion::default(), &step.increment).unwrap();
         by_position.predict(&OdometryMotion::default(), &step.increment).unwrap();
-        by_range.update(&step.observations, &mut KnownIds).unwrap();
+        by_range.update(&step.observations, &mut KnownIdAssociation).unwrap();
         let positions: Vec<_> = step
             .observations
             .iter()
             .map(|seen| Observation { label: seen.label, measurement: seen.measurement.point() })
             .collect();
-        by_position.update(&positions, &mut KnownIds).unwrap();
+        by_position.update(&positions, &mut KnownIdAssociation).unwrap();
     }
     let truth = steps.last().unwrap().truth;
     let distance = |pose: &Pose2<f64>| (pose.translation - truth.translation).norm();
@@ -95,7 +95,7 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
     let mut slam = slam(SlamParams::default());
     for step in common::drive(10, &landmarks, &mut rng) {
         slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
-        slam.update(&step.observations, &mut KnownIds).unwrap();
+        slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
     }
     let before: Vec<_> = slam.landmarks().filter(|landmark| landmark.id != LandmarkId(1)).collect();
     let (robot, n) = (slam.robot_covariance(), slam.covariance().nrows());
@@ -110,12 +110,12 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 fn false_first_detection_is_replaced_and_unseen_one_removed() {
     let confirmation = LandmarkConfirmationParams {
         min_detections: 2,
-        max_missed: Some(3),
+        max_consecutive_misses: Some(3),
         ..LandmarkConfirmationParams::default()
     };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let mut look = |observations: &[Observation<RangeBearing>]| {
-        slam.update(observations, &mut KnownIds).unwrap().outcomes
+        slam.update(observations, &mut KnownIdAssociation).unwrap().outcomes
     };
     assert_eq!(
         look(&[seen(1, 9.0, 1.0), seen(2, 3.0, 0.0)])[0],
@@ -125,7 +125,7 @@ fn false_first_detection_is_replaced_and_unseen_one_removed() {
     assert!(matches!(look(&[seen(1, 2.0, 0.5)])[0], ObservationOutcome::Accepted { .. }));
     look(&[]);
     assert_eq!(slam.n_tentative(), 1); // landmark 2, seen once, three looks ago
-    slam.update(&[], &mut KnownIds).unwrap();
+    slam.update(&[], &mut KnownIdAssociation).unwrap();
     assert_eq!((slam.n_landmarks(), slam.n_tentative()), (1, 0));
     let confirmed = slam.landmark(LandmarkId(1)).unwrap();
     assert_abs_diff_eq!(slam.robot().inverse_transform(&confirmed.mean).norm(), 2.0, epsilon = 0.05);
@@ -134,7 +134,7 @@ fn false_first_detection_is_replaced_and_unseen_one_removed() {
 #[test]
 fn an_identity_seen_twice_in_one_look_counts_once() {
     let mut slam = slam(SlamParams::default());
-    let report = slam.update(&[seen(1, 2.0, 0.0), seen(1, 2.5, 0.1)], &mut KnownIds).unwrap();
+    let report = slam.update(&[seen(1, 2.0, 0.0), seen(1, 2.5, 0.1)], &mut KnownIdAssociation).unwrap();
     assert_eq!(report.outcomes[1], ObservationOutcome::Duplicate { landmark: LandmarkId(1) });
     assert_eq!(report.n_rejected(), 1);
 }
@@ -145,9 +145,9 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
         LandmarkConfirmationParams { min_detections: 1, ..LandmarkConfirmationParams::default() };
     for outliers in [OutlierRule::Reject, OutlierRule::Downweight] {
         let mut slam = slam(SlamParams { outlier_rule: outliers, confirmation, ..SlamParams::default() });
-        slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
+        slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIdAssociation).unwrap();
         let before = slam.clone();
-        let report = slam.update(&[seen(1, 4.0, 0.0)], &mut KnownIds).unwrap();
+        let report = slam.update(&[seen(1, 4.0, 0.0)], &mut KnownIdAssociation).unwrap();
         let moved = (slam.landmark(LandmarkId(1)).unwrap().mean
             - before.landmark(LandmarkId(1)).unwrap().mean)
             .norm();
@@ -204,11 +204,14 @@ fn bad_parameters_and_landmarks_are_typed_errors() {
             Err(SlamError::Parameter { .. })
         ));
     }
-    for restart_nis in [0.0, -1.0, f64::NAN] {
+    for tentative_restart_nis in [0.0, -1.0, f64::NAN] {
         let confirmation =
-            LandmarkConfirmationParams { restart_nis, ..LandmarkConfirmationParams::default() };
+            LandmarkConfirmationParams { tentative_restart_nis, ..LandmarkConfirmationParams::default() };
         let params = SlamParams { confirmation, ..SlamParams::default() };
-        assert!(EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(), "{restart_nis}");
+        assert!(
+            EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(),
+            "{tentative_restart_nis}"
+        );
     }
     assert!(
         NearestNeighbour::new(NearestNeighbourParams {
@@ -250,7 +253,7 @@ impl DataAssociation<RangeBearingSensor> for Says {
 fn an_association_that_breaks_its_law_harms_nothing() {
     let mut slam = slam(SlamParams::default());
     slam.add_anchor(LandmarkId(7), Vector2::new(1.0, 1.0)).unwrap();
-    slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
+    slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIdAssociation).unwrap();
     let before = format!("{slam:?}");
     let error = slam.update(&[seen(1, 2.0, 0.0)], &mut Says(Vec::new())).unwrap_err();
     assert_eq!(error, SlamError::Dimension { what: "list of associations", expected: 1, got: 0 });

@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    CorrelatedNoise, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
+    CorrelatedNoise, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIdAssociation,
     LandmarkConfirmationParams, LandmarkId, LandmarkMerge, LandmarkMergingParams, NearestNeighbour,
     NearestNeighbourParams, Observation, ObservationOutcome, OdometryMotion, RangeBearing,
     RangeBearingSensor, SlamError, SlamParams,
@@ -111,11 +111,11 @@ fn landmarks_below_the_least_distance_are_merged() {
     let merging = Some(LandmarkMergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     for _ in 0..20 {
-        slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
+        slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIdAssociation).unwrap();
     }
     let mut merges = Vec::new();
     for _ in 0..20 {
-        merges.extend(slam.update(&[labelled(2, 2.05, 0.0)], &mut KnownIds).unwrap().merges);
+        merges.extend(slam.update(&[labelled(2, 2.05, 0.0)], &mut KnownIdAssociation).unwrap().merges);
         if !merges.is_empty() {
             break;
         }
@@ -131,10 +131,12 @@ fn two_that_may_stand_apart_stay_two() {
     let merging = Some(LandmarkMergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     // 0.1 m apart, but seen once each: two standard deviations of their difference are 2 · √(2 · (0.05² + 0.02²)) = 0.15 m, and 0.1 m is left.
-    let report = slam.update(&[labelled(1, 2.0, 0.0), labelled(2, 2.1, 0.0)], &mut KnownIds).unwrap();
+    let report =
+        slam.update(&[labelled(1, 2.0, 0.0), labelled(2, 2.1, 0.0)], &mut KnownIdAssociation).unwrap();
     assert!(report.merges.is_empty());
     for _ in 0..200 {
-        let report = slam.update(&[labelled(1, 2.0, 0.0), labelled(3, 2.25, 0.0)], &mut KnownIds).unwrap();
+        let report =
+            slam.update(&[labelled(1, 2.0, 0.0), labelled(3, 2.25, 0.0)], &mut KnownIdAssociation).unwrap();
         assert!(report.merges.is_empty()); // 0.25 m apart, however certain
     }
 }
@@ -147,7 +149,7 @@ fn merge_equals_an_update_that_both_coincide() {
         EkfSlam::new(RangeBearingSensor::default(), SlamParams::default(), common::start()).unwrap();
     for step in common::drive(10, &landmarks, &mut rng) {
         slam.predict(&OdometryMotion::default(), &step.increment).unwrap();
-        slam.update(&step.observations, &mut KnownIds).unwrap();
+        slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
     }
     let ids: Vec<LandmarkId> = slam.landmarks().map(|landmark| landmark.id).collect();
     let (a, b) = (slam.landmark(ids[0]).unwrap(), slam.landmark(ids[1]).unwrap());
@@ -162,7 +164,7 @@ fn merge_equals_an_update_that_both_coincide() {
 #[test]
 fn impossible_merge_changes_nothing() {
     let mut slam = slam(RangeBearingSensor::default(), None);
-    slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
+    slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIdAssociation).unwrap();
     slam.add_anchor(LandmarkId(9), Vector2::new(2.0, 0.0)).unwrap();
     let before = format!("{slam:?}");
     for (kept, removed) in [(1, 1), (1, 2), (2, 1), (1, 9), (9, 1)] {

@@ -9,8 +9,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, Pose2, SensorModel};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, OdometryMotion, OutlierRule,
-    RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams, laws,
+    EkfSlam, KnownIdAssociation, LandmarkId, LineDistanceSensor, MonobotMotion, Observation, OdometryMotion,
+    OutlierRule, RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams, laws,
     observability::ObservabilityRecorder,
 };
 
@@ -50,7 +50,7 @@ fn lap(n_anchors: usize, camera: bool) -> ObservabilityRecorder {
             let innovation = slam.update_robot(&Ceiling, &seen).unwrap();
             assert!(recorder.record_robot(&slam, &jacobian, &innovation.covariance));
         }
-        slam.update(&step.observations, &mut KnownIds).unwrap();
+        slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
         let ids: Vec<LandmarkId> = step.observations.iter().filter_map(|seen| seen.label).collect();
         assert!(recorder.record(&slam, &ids));
     }
@@ -96,7 +96,7 @@ fn accumulated_information_has_the_rank_of_one_linearization() {
             .unwrap();
     let mut recorder = ObservabilityRecorder::new(&slam);
     let seen = |id: u32, x, y| Observation { label: Some(LandmarkId(id)), measurement: Vector2::new(x, y) };
-    slam.update(&[seen(0, 2.0, 0.3), seen(1, -1.0, 4.0)], &mut KnownIds).unwrap();
+    slam.update(&[seen(0, 2.0, 0.3), seen(1, -1.0, 4.0)], &mut KnownIdAssociation).unwrap();
     recorder.record(&slam, &[LandmarkId(0), LandmarkId(1)]);
     assert_eq!((recorder.dimension(), recorder.rank()), (7, 4));
     assert!((recorder.information() * recorder.null_space()).amax() < 1e-9 * recorder.information().amax());
@@ -105,12 +105,12 @@ fn accumulated_information_has_the_rank_of_one_linearization() {
 #[test]
 fn the_monobot_has_the_information_of_the_paper() {
     // Eqs. 15 and 17: J = Σ 1/s (1, −1)ᵀ(1, −1); singular in (1, 1), whatever the number of steps.
-    let sensor = MonobotSensor { sigma: 1.0, sigma_per_meter: 0.0 };
+    let sensor = LineDistanceSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };
     let start = (Vector1::new(0.0), Matrix1::new(1.0));
     let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start.0, start.1).unwrap();
     let seen = [Observation { label: Some(LandmarkId(0)), measurement: Vector1::new(1.0) }];
-    slam.update(&seen, &mut KnownIds).unwrap();
+    slam.update(&seen, &mut KnownIdAssociation).unwrap();
     let mut recorder = ObservabilityRecorder::new(&slam);
     let mut expected = 0.0;
     for _ in 0..20 {
@@ -119,7 +119,7 @@ fn the_monobot_has_the_information_of_the_paper() {
         let p = slam.covariance();
         expected += 1.0 / (p[(0, 0)] - 2.0 * p[(0, 1)] + p[(1, 1)] + 1.0);
         recorder.record(&slam, &[LandmarkId(0)]);
-        slam.update(&seen, &mut KnownIds).unwrap();
+        slam.update(&seen, &mut KnownIdAssociation).unwrap();
     }
     let j = recorder.information();
     for (place, sign) in [((0, 0), 1.0), ((0, 1), -1.0), ((1, 0), -1.0), ((1, 1), 1.0)] {
@@ -130,7 +130,7 @@ fn the_monobot_has_the_information_of_the_paper() {
 
 #[test]
 fn the_monobot_keeps_the_laws() {
-    let line = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.1 };
+    let line = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.1 };
     laws::landmark_model(&line, &[Vector1::new(-1.0)], &[Vector1::new(1.0), Vector1::new(-3.0)]).unwrap();
 }
 

@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Pose2, wrap_angle};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, OdometryMotion, OutlierRule,
+    EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, OdometryMotion, OutlierRule,
     RangeBearingSensor, SlamParams, UpdateOrder,
 };
 
@@ -143,7 +143,7 @@ fn compare(order: UpdateOrder) {
         if step.increment.translation.norm() > 0.0 {
             textbook.predict(&step.increment);
         }
-        let report = slam.update(&step.observations, &mut KnownIds).unwrap();
+        let report = slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
         assert_eq!(report.n_rejected(), 0);
         let seen: Vec<_> = step
             .observations
@@ -196,7 +196,7 @@ fn joint_update_is_independent_of_observation_order() {
             if reversed {
                 observations.reverse();
             }
-            slam.update(&observations, &mut KnownIds).unwrap();
+            slam.update(&observations, &mut KnownIdAssociation).unwrap();
         }
         slam
     };

@@ -8,7 +8,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Manifold;
 use wayfix_gaussian_core::ChiSquaredBand;
-use wayfix_slam_ekf::{EkfSlam, KnownIds, LandmarkId, OdometryMotion, RangeBearingSensor, SlamParams};
+use wayfix_slam_ekf::{
+    EkfSlam, KnownIdAssociation, LandmarkId, OdometryMotion, RangeBearingSensor, SlamParams,
+};
 
 const N_RUNS: u64 = 60;
 
@@ -31,7 +33,7 @@ fn drive(seed: u64, retire_after: Option<usize>) -> (EkfSlam<RangeBearingSensor>
     let mut slam = EkfSlam::new(sensor, params, common::start()).unwrap();
     for step in &steps {
         slam.predict(&motion, &step.increment).unwrap();
-        slam.update(&step.observations, &mut KnownIds).unwrap();
+        slam.update(&step.observations, &mut KnownIdAssociation).unwrap();
     }
     let error = slam.robot().local(&steps.last().unwrap().truth);
     let nees = error.dot(&Cholesky::new(slam.robot_covariance()).unwrap().solve(&error));

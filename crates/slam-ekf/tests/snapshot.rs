@@ -20,7 +20,7 @@ type Saved = SlamSnapshot<Pose2<f64>, Vector2<f64>>;
 fn params(linearization: LinearizationPoint) -> SlamParams {
     let confirmation = LandmarkConfirmationParams {
         min_detections: 4,
-        max_missed: Some(2),
+        max_consecutive_misses: Some(2),
         ..LandmarkConfirmationParams::default()
     };
     SlamParams { confirmation, linearization_point: linearization, ..SlamParams::default() }

@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use wayfix_sensor_log::OpenOptions;
+use wayfix_sensor_log::LogOpenOptions;
 use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile},
     slam::AssociationRule,
@@ -19,7 +19,7 @@ fn main() -> Result<()> {
         eprintln!("skipped: WAYFIX_DATA names no folder with victoria_park in it");
         return Ok(());
     }
-    let (records, _) = wayfix_sensor_log::open(&folder, &OpenOptions::default())?.read_all();
+    let (records, _) = wayfix_sensor_log::open(&folder, &LogOpenOptions::default())?.read_all();
     for (association, name) in [(AssociationRule::Nn, "nn"), (AssociationRule::Jcbb, "jcbb")] {
         let params = PointSlamParams {
             association: Some(association),

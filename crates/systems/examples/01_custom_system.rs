@@ -4,7 +4,7 @@
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_evaluation::report::{Metric, ReportRun, table};
-use wayfix_sensor_log::{OpenOptions, Record, RecordData};
+use wayfix_sensor_log::{LogOpenOptions, Record, RecordData};
 use wayfix_systems::system::{EventCounts, System, drive};
 
 /// Believes its odometry.
@@ -43,7 +43,7 @@ impl System for DeadReckoning {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "fixtures/loop_known.mcap".to_owned());
-    let (records, _) = wayfix_sensor_log::open(&path, &OpenOptions::default())?.read_all();
+    let (records, _) = wayfix_sensor_log::open(&path, &LogOpenOptions::default())?.read_all();
     let mut system = DeadReckoning::default();
     drive(&mut system, &records, |_| {});
 

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_systems::{
     points::SavedPointMap,
     slam::{AssociationRule, SavedMapError},
@@ -13,7 +13,7 @@ use wayfix_systems::{
 /// The office floor, up to a stamp that both halves of a run have in common.
 fn office(n_records: usize) -> Vec<Record> {
     let log = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/office_laser.mcap");
-    let mut records = wayfix_sensor_log::open(&log, &OpenOptions::default()).unwrap().read_all().0;
+    let mut records = wayfix_sensor_log::open(&log, &LogOpenOptions::default()).unwrap().read_all().0;
     records.truncate(n_records);
     records
 }

@@ -13,7 +13,7 @@ use harness::measure;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::SyntheticFilm;
-use wayfix_visual_tracking::{ContourTracker, ContourTrackerParams, Tracker as _};
+use wayfix_visual_tracking::{ColorContourTracker, ColorContourTrackerParams, Tracker as _};
 
 /// Pictures that are tracked before the one that is measured, so that colours and motion are known.
 const N_BEFORE: usize = 10;
@@ -22,8 +22,8 @@ fn main() {
     for film in SyntheticFilm::ALL.into_iter().filter(|film| film.name != "head") {
         let mut frames = film.frames().expect("a known film");
         let first = frames.next().expect("frames");
-        let params = ContourTrackerParams::default();
-        let start = ContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params);
+        let params = ColorContourTrackerParams::default();
+        let start = ColorContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params);
         let mut tracker = start.expect("a target in sight");
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         for frame in frames.by_ref().take(N_BEFORE) {

@@ -8,7 +8,7 @@ mod films;
 
 use films::{Record, follow};
 use wayfix_scene_sim::film::SyntheticFilm;
-use wayfix_visual_tracking::{ContourTrackerParams, TrackingCues};
+use wayfix_visual_tracking::{ColorContourTrackerParams, TrackingCues};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -16,13 +16,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let n_seeds = arguments.next().map_or(Ok(3), |n| n.parse())?;
     let films = if name == "all" { SyntheticFilm::ALL.to_vec() } else { vec![SyntheticFilm::named(&name)?] };
 
-    let full = ContourTrackerParams::default();
+    let full = ColorContourTrackerParams::default();
     let methods = [
         ("full method", full),
-        ("fixed colours", ContourTrackerParams { adapts_colors: false, ..full }),
-        ("colour only", ContourTrackerParams { cues: TrackingCues::Color, ..full }),
-        ("shape only", ContourTrackerParams { cues: TrackingCues::Shape, ..full }),
-        ("as published", ContourTrackerParams::as_published()),
+        ("fixed colours", ColorContourTrackerParams { adapts_colors: false, ..full }),
+        ("colour only", ColorContourTrackerParams { cues: TrackingCues::Color, ..full }),
+        ("shape only", ColorContourTrackerParams { cues: TrackingCues::Shape, ..full }),
+        ("as published", ColorContourTrackerParams::as_published()),
     ];
     println!(
         "{:10} {:14} {:>8} {:>8} {:>8} {:>8}",

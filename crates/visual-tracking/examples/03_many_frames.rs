@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{FilmFrame, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BoundingBox, ContourTracker, CorrelationTracker, PixelMask, RgbImage, TrackStatus, Tracker,
+    BoundingBox, ColorContourTracker, CorrelationTracker, PixelMask, RgbImage, TrackStatus, Tracker,
 };
 
 /// Every so many pixels are taken.
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mask = PixelMask::from_fn(SIZE.0, SIZE.1, |u, v| target.pixels()[STRIDE * (v * target.width() + u)])?;
     match method.as_deref() {
         Some("contour") => watch(
-            &mut ContourTracker::from_mask(&pictures[0], &mask, Default::default())?,
+            &mut ColorContourTracker::from_mask(&pictures[0], &mask, Default::default())?,
             &pictures,
             n_frames,
         ),

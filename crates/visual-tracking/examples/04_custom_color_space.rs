@@ -8,7 +8,7 @@ mod films;
 
 use films::follow;
 use wayfix_scene_sim::film::SyntheticFilm;
-use wayfix_visual_tracking::{ColorSpace, ContourTrackerParams, CustomColorSpace};
+use wayfix_visual_tracking::{ColorContourTrackerParams, ColorSpace, CustomColorSpace};
 
 const YCGCO: CustomColorSpace = CustomColorSpace {
     axis_names: ["Y", "Cg", "Co"],
@@ -22,7 +22,7 @@ const YCGCO: CustomColorSpace = CustomColorSpace {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let film = SyntheticFilm { seed: 1, ..SyntheticFilm::named("rectangle")? };
-    let params = ContourTrackerParams { color_space: ColorSpace::Custom(YCGCO), ..Default::default() };
+    let params = ColorContourTrackerParams { color_space: ColorSpace::Custom(YCGCO), ..Default::default() };
     let record = follow(&film, params);
     println!("{}: mean overlap {:.3}, lost in {} frames", film.name, record.mean_overlap(), record.n_lost());
     assert!(record.mean_overlap() > 0.8, "the target is not followed");

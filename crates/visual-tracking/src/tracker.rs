@@ -38,4 +38,10 @@ pub trait Tracker {
         picture: &RgbImage,
         rng: &mut R,
     ) -> Result<TargetEstimate, TrackingError>;
+
+    /// The camera has turned since the last picture: what stands still moves by `shift` pixels from there to the next one. A tracker without a
+    /// motion model ignores it.
+    fn camera_turned(&mut self, shift: [f64; 2]) {
+        let _ = shift;
+    }
 }

@@ -10,8 +10,8 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BoundingBox, ColorDynamics, ColorStateVector, ContourTracker, ContourTrackerParams, Outline, PixelMask,
-    RgbImage, TrackStatus, Tracker as _, TrackingCues, TrackingError,
+    BoundingBox, ColorContourTracker, ColorContourTrackerParams, ColorDynamics, ColorStateVector, Outline,
+    PixelMask, RgbImage, TrackStatus, Tracker as _, TrackingCues, TrackingError,
 };
 
 const SIZE: (usize, usize) = (120, 90);
@@ -30,8 +30,9 @@ fn disk_box(center: [f64; 2]) -> BoundingBox {
     BoundingBox::from_center(center, 28.0, 28.0).unwrap()
 }
 
-fn on_disk(params: ContourTrackerParams) -> ContourTracker {
-    ContourTracker::from_box(&disk([40.0, 45.0], [200, 60, 60]), &disk_box([40.0, 45.0]), params).unwrap()
+fn on_disk(params: ColorContourTrackerParams) -> ColorContourTracker {
+    ColorContourTracker::from_box(&disk([40.0, 45.0], [200, 60, 60]), &disk_box([40.0, 45.0]), params)
+        .unwrap()
 }
 
 /// From red to blue in 70 pictures: 2 grey values a picture, 28 bins of 5 values in all.
@@ -42,9 +43,9 @@ fn turning_blue(step: usize) -> RgbImage {
 
 #[test]
 fn colours_are_followed_and_without_adaptation_they_are_not() {
-    let params = ContourTrackerParams { n_samples: 40, ..ContourTrackerParams::default() };
+    let params = ColorContourTrackerParams { n_samples: 40, ..ColorContourTrackerParams::default() };
     let mut adaptive = on_disk(params);
-    let mut fixed = on_disk(ContourTrackerParams { adapts_colors: false, ..params });
+    let mut fixed = on_disk(ColorContourTrackerParams { adapts_colors: false, ..params });
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     for step in 1..70 {
         let picture = turning_blue(step);
@@ -64,7 +65,7 @@ fn colours_are_followed_and_without_adaptation_they_are_not() {
 
 #[test]
 fn the_published_form_follows_what_changes_slowly() {
-    let mut tracker = on_disk(ContourTrackerParams::as_published());
+    let mut tracker = on_disk(ColorContourTrackerParams::as_published());
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     for step in 1..15 {
         let target = tracker.track(&turning_blue(step), &mut rng).unwrap();
@@ -79,7 +80,7 @@ fn the_published_form_follows_what_changes_slowly() {
 fn simulated_targets_are_followed() {
     for (name, least) in [("circles", 0.8), ("rectangle", 0.8), ("beetle", 0.8), ("snail", 0.75)] {
         let film = SyntheticFilm { seed: 3, n_frames: 50, ..SyntheticFilm::named(name).unwrap() };
-        let record = follow(&film, ContourTrackerParams::default());
+        let record = follow(&film, ColorContourTrackerParams::default());
         assert_eq!(record.n_lost(), 0, "{name}");
         assert!(record.mean_overlap() >= least, "{name}: {}", record.mean_overlap());
     }
@@ -88,8 +89,9 @@ fn simulated_targets_are_followed() {
 #[test]
 fn snail_neck_is_outside_the_contour_and_inside_the_blob() {
     let film = SyntheticFilm { seed: 3, n_frames: 60, ..SyntheticFilm::named("snail").unwrap() };
-    let with_shape = follow(&film, ContourTrackerParams::default()).decoy_inside();
-    let color = ContourTrackerParams { cues: TrackingCues::Color, ..ContourTrackerParams::default() };
+    let with_shape = follow(&film, ColorContourTrackerParams::default()).decoy_inside();
+    let color =
+        ColorContourTrackerParams { cues: TrackingCues::Color, ..ColorContourTrackerParams::default() };
     let color_only = follow(&film, color).decoy_inside();
     assert!(with_shape < 0.3 && with_shape < 0.5 * color_only, "{with_shape} against {color_only}");
 }
@@ -99,7 +101,7 @@ fn a_target_that_leaves_is_lost_and_found_again() {
     for (name, comes_back_alike) in [("snail", true), ("circles", false)] {
         let film =
             SyntheticFilm { seed: 2, occlusion: OcclusionEvent::Away, ..SyntheticFilm::named(name).unwrap() };
-        let record = follow(&film, ContourTrackerParams::default());
+        let record = follow(&film, ColorContourTrackerParams::default());
         assert!(record.n_gone() >= 13, "the film is about a target that leaves");
         assert_eq!(record.n_confident_while_gone(), 0, "{name}");
         // A circle comes back in another colour among others of its shape: nothing tells which it is.
@@ -111,21 +113,25 @@ fn a_target_that_leaves_is_lost_and_found_again() {
 
 #[test]
 fn a_picture_of_one_colour_has_no_target() {
-    let mut tracker = on_disk(ContourTrackerParams::default());
+    let mut tracker = on_disk(ColorContourTrackerParams::default());
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     for cues in [TrackingCues::ColorAndShape, TrackingCues::Color, TrackingCues::Shape] {
         for color in [[0; 3], [255; 3], [200, 60, 60]] {
             let blank = RgbImage::from_raw(SIZE.0 as u32, SIZE.1 as u32, color.repeat(SIZE.0 * SIZE.1))
                 .expect("3 bytes a pixel");
-            let mut blind = on_disk(ContourTrackerParams { cues, ..ContourTrackerParams::default() });
+            let mut blind =
+                on_disk(ColorContourTrackerParams { cues, ..ColorContourTrackerParams::default() });
             assert_eq!(
                 blind.track(&blank, &mut rng).unwrap().status,
                 TrackStatus::Lost,
                 "{cues:?} {color:?}"
             );
             tracker.track(&blank, &mut rng).unwrap();
-            let started =
-                ContourTracker::from_box(&blank, &disk_box([40.0, 45.0]), ContourTrackerParams::default());
+            let started = ColorContourTracker::from_box(
+                &blank,
+                &disk_box([40.0, 45.0]),
+                ColorContourTrackerParams::default(),
+            );
             assert_eq!(started.unwrap().track(&blank, &mut rng).unwrap().status, TrackStatus::Lost);
         }
     }
@@ -136,25 +142,30 @@ fn a_picture_of_one_colour_has_no_target() {
 
 #[test]
 fn what_cannot_be_used_is_refused_and_changes_nothing() {
-    let (picture, params) = (disk([40.0, 45.0], [200, 60, 60]), ContourTrackerParams::default());
+    let (picture, params) = (disk([40.0, 45.0], [200, 60, 60]), ColorContourTrackerParams::default());
     let outside = BoundingBox::from_corner(500.0, 500.0, 20.0, 20.0).unwrap();
-    assert!(matches!(ContourTracker::from_box(&picture, &outside, params), Err(TrackingError::Empty { .. })));
+    assert!(matches!(
+        ColorContourTracker::from_box(&picture, &outside, params),
+        Err(TrackingError::Empty { .. })
+    ));
     let huge = BoundingBox::from_corner(-1e300, 0.0, 2e300, 1e300).unwrap();
-    assert!(ContourTracker::from_box(&picture, &huge, params).is_err());
+    assert!(ColorContourTracker::from_box(&picture, &huge, params).is_err());
     let speck = BoundingBox::from_corner(3.2, 3.2, 0.1, 0.1).unwrap();
-    assert!(ContourTracker::from_box(&picture, &speck, params).is_err());
+    assert!(ColorContourTracker::from_box(&picture, &speck, params).is_err());
     let other = PixelMask::full(SIZE.0 + 1, SIZE.1).unwrap();
-    assert!(ContourTracker::from_mask(&picture, &other, params).is_err());
-    assert!(ContourTracker::from_mask(&picture, &PixelMask::empty(SIZE.0, SIZE.1).unwrap(), params).is_err());
+    assert!(ColorContourTracker::from_mask(&picture, &other, params).is_err());
+    assert!(
+        ColorContourTracker::from_mask(&picture, &PixelMask::empty(SIZE.0, SIZE.1).unwrap(), params).is_err()
+    );
     for params in [
-        ContourTrackerParams { n_samples: 0, ..params },
-        ContourTrackerParams { quality_sigma: f64::NAN, ..params },
-        ContourTrackerParams { quality_weights: [0.0; 3], ..params },
-        ContourTrackerParams { color_bins: [0; 3], ..params },
-        ContourTrackerParams { color_state_noise: [f64::INFINITY; 8], ..params },
-        ContourTrackerParams { lost_below: 1.5, ..params },
+        ColorContourTrackerParams { n_samples: 0, ..params },
+        ColorContourTrackerParams { agreement_sigma: f64::NAN, ..params },
+        ColorContourTrackerParams { agreement_weights: [0.0; 3], ..params },
+        ColorContourTrackerParams { color_bins: [0; 3], ..params },
+        ColorContourTrackerParams { color_state_noise: [f64::INFINITY; 8], ..params },
+        ColorContourTrackerParams { lost_below_quality: 1.5, ..params },
     ] {
-        assert!(ContourTracker::from_box(&picture, &disk_box([40.0, 45.0]), params).is_err());
+        assert!(ColorContourTracker::from_box(&picture, &disk_box([40.0, 45.0]), params).is_err());
     }
 
     let (mut tracker, mut undisturbed) = (on_disk(params), on_disk(params));
@@ -180,8 +191,11 @@ fn every_start_and_every_size_can_be_tracked_without_a_panic() {
         {
             let bounds = BoundingBox::from_corner(x, y, w, h).unwrap();
             for cues in [TrackingCues::ColorAndShape, TrackingCues::Color, TrackingCues::Shape] {
-                let params = ContourTrackerParams { cues, n_samples: 10, ..ContourTrackerParams::default() };
-                let Ok(mut tracker) = ContourTracker::from_box(&picture, &bounds, params) else { continue };
+                let params =
+                    ColorContourTrackerParams { cues, n_samples: 10, ..ColorContourTrackerParams::default() };
+                let Ok(mut tracker) = ColorContourTracker::from_box(&picture, &bounds, params) else {
+                    continue;
+                };
                 for _ in 0..4 {
                     let target = tracker.track(&picture, &mut rng).unwrap();
                     assert!((0.0..=1.0).contains(&target.quality));
@@ -193,7 +207,8 @@ fn every_start_and_every_size_can_be_tracked_without_a_panic() {
 
 #[test]
 fn memory_does_not_grow_with_the_film() {
-    let mut tracker = on_disk(ContourTrackerParams { n_samples: 4, ..ContourTrackerParams::default() });
+    let mut tracker =
+        on_disk(ColorContourTrackerParams { n_samples: 4, ..ColorContourTrackerParams::default() });
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let mut size_after = |n: usize| {
         for step in 0..n {
@@ -212,11 +227,11 @@ fn memory_does_not_grow_with_the_film() {
 #[test]
 fn dynamics_of_ones_own_are_used() {
     let still = ColorDynamics::constant_velocity(0.0, &ColorStateVector::zeros()).unwrap();
-    let params = ContourTrackerParams {
+    let params = ColorContourTrackerParams {
         min_target_to_background_ratio: 0.0,
         previous_colors_weight: 0.0,
         share_from_last_measurement: 0.0,
-        ..ContourTrackerParams::default()
+        ..ColorContourTrackerParams::default()
     };
     let mut tracker = on_disk(params).with_dynamics(still);
     let mut rng = ChaCha8Rng::seed_from_u64(6);
@@ -233,7 +248,8 @@ fn dynamics_of_ones_own_are_used() {
 fn an_outline_of_the_users_is_the_contour() {
     let picture = disk([40.0, 45.0], [200, 60, 60]);
     let outline = Outline::ellipse(&disk_box([40.0, 45.0]), 64).unwrap();
-    let tracker = ContourTracker::from_outline(&picture, &outline, ContourTrackerParams::default()).unwrap();
+    let tracker =
+        ColorContourTracker::from_outline(&picture, &outline, ColorContourTrackerParams::default()).unwrap();
     assert!((tracker.snake().outline().area() - outline.area()).abs() < 0.02 * outline.area());
 }
 
@@ -247,9 +263,9 @@ fn any_number_of_threads_gives_the_same_bits() {
         pool.install(|| {
             let mut frames = film.frames().unwrap();
             let first = frames.next().unwrap();
-            let params = ContourTrackerParams::default();
+            let params = ColorContourTrackerParams::default();
             let mut tracker =
-                ContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params).unwrap();
+                ColorContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params).unwrap();
             let mut rng = ChaCha8Rng::seed_from_u64(4);
             frames.map(|frame| tracker.track(&picture_of(&frame), &mut rng).unwrap()).collect::<Vec<_>>()
         })
@@ -260,7 +276,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn the_contour_is_the_mask_that_is_measured() {
     let picture = disk([40.0, 45.0], [200, 60, 60]);
-    let mut tracker = on_disk(ContourTrackerParams::default());
+    let mut tracker = on_disk(ColorContourTrackerParams::default());
     let target = tracker.track(&picture, &mut ChaCha8Rng::seed_from_u64(7)).unwrap();
     let truth = std::f64::consts::PI * 14.0 * 14.0;
     let area = contour_mask(&target, SIZE).area() as f64;

@@ -103,7 +103,7 @@ fn a_target_that_leaves_is_lost_and_found_where_it_comes_back() {
     for t in 1..10 {
         next(&mut tracker, &painting.at([50.0 + f64::from(t), 50.0], 28.0));
     }
-    let patience = CorrelationTrackerParams::default().lost_after;
+    let patience = CorrelationTrackerParams::default().lost_after_n_frames;
     let statuses: Vec<_> = (0..patience + 20).map(|_| next(&mut tracker, &painting.ground).status).collect();
     assert!(statuses[patience..].iter().all(|&status| status == TrackStatus::Lost), "{statuses:?}");
 

@@ -6,8 +6,8 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BoundingBox, HeadTracker, HeadTrackerParams, PixelMask, RgbImage, ScaleSource, TrackStatus, Tracker,
-    TrackingError,
+    BoundingBox, HeadDetector, HeadTracker, HeadTrackerParams, PixelMask, RelativeHeadSizeSource, RgbImage,
+    TrackStatus, Tracker, TrackingError,
 };
 
 const WIDTH: usize = 160;
@@ -64,7 +64,7 @@ fn colours_that_adapt_follow_the_light() {
     let run = |adaptation: f64| {
         let params = HeadTrackerParams {
             color_adaptation_rate: adaptation,
-            gradient_weight: 0.0,
+            gradient_weight: Some(0.0),
             ..Default::default()
         };
         let mut tracker =
@@ -82,7 +82,7 @@ fn colours_that_adapt_follow_the_light() {
 #[test]
 fn the_scale_is_searched_or_comes_from_outside() {
     struct Stereo;
-    impl ScaleSource for Stereo {
+    impl RelativeHeadSizeSource for Stereo {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(1.5)
         }
@@ -102,7 +102,7 @@ fn the_scale_is_searched_or_comes_from_outside() {
 #[test]
 fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     struct Broken;
-    impl ScaleSource for Broken {
+    impl RelativeHeadSizeSource for Broken {
         fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
             Some(f64::NAN)
         }
@@ -110,7 +110,7 @@ fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     let shown = picture([53.0, 60.0], 0.35, 1.0, 1.0);
     let mut broken = started().with_scale_source(Broken);
     assert!(matches!(broken.track(&shown, &mut rng()), Err(TrackingError::Parameter { .. })));
-    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::SearchedScale);
+    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::HeadSizeFromSearch);
     assert_eq!(repaired.track(&shown, &mut rng()), started().track(&shown, &mut rng()));
 }
 
@@ -199,4 +199,27 @@ fn head_that_leaves_is_lost_after_a_first_box_too_large() {
             assert!(back.bounding_box.iou(&first) > 0.5, "{colors:?} {margin}: {:?}", back.bounding_box);
         }
     }
+}
+
+#[test]
+fn a_detector_starts_the_tracker_without_a_box() {
+    let examples: Vec<_> = [([50.0, 60.0], 0.35), ([100.0, 50.0], 0.9)]
+        .map(|(center, hair)| (picture(center, hair, 1.0, 1.0), head(center, 1.0)))
+        .into();
+    let pairs = examples.iter().map(|(picture, head)| (picture, *head));
+    let detector = HeadDetector::learn(pairs, &HeadTrackerParams::default()).unwrap();
+    for (center, hair, scale) in
+        [([110.0, 70.0], 0.35, 1.0), ([70.0, 60.0], 0.6, 1.4), ([40.0, 45.0], 0.2, 0.7)]
+    {
+        let shown = picture(center, hair, scale, 1.0);
+        let found = detector.detect(&shown, 12.0..=80.0).unwrap().expect("a head");
+        // "on its target" [Everingham et al. 2010]
+        assert!(found.iou(&head(center, scale)) >= 0.5, "{center:?} {found:?}");
+        HeadTracker::new(&shown, found, HeadTrackerParams::default()).expect("a head to follow");
+    }
+    let nobody = before_a_wall(None, 0);
+    assert_eq!(detector.detect(&nobody, 12.0..=80.0), Ok(None));
+    assert!(matches!(detector.detect(&nobody, 1.0..=80.0), Err(TrackingError::Parameter { .. })));
+    let untaught = HeadDetector::learn([], &HeadTrackerParams::default());
+    assert!(matches!(untaught, Err(TrackingError::Empty { .. })));
 }

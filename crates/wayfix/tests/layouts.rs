@@ -19,7 +19,7 @@ use mcap::MessageStream;
 use serde_json::Value;
 use wayfix_evaluation::report::foxglove_layout;
 use wayfix_scene_sim::film::SyntheticFilm;
-use wayfix_sensor_log::{EncodedImage, LogFormat, OpenOptions, Record, open, write};
+use wayfix_sensor_log::{EncodedImage, LogFormat, LogOpenOptions, Record, open, write};
 
 const LAYOUT: &str = "foxglove-layout.json";
 
@@ -30,7 +30,7 @@ fn fixture(name: &str) -> PathBuf {
 /// The first records of a fixture: topics do not wait for long.
 fn beginning(scratch: &Scratch, name: &str, n_records: usize) -> PathBuf {
     let records: Vec<Record> =
-        open(fixture(name), &OpenOptions::default()).unwrap().take(n_records).collect();
+        open(fixture(name), &LogOpenOptions::default()).unwrap().take(n_records).collect();
     let path = scratch.path(name);
     write(&path, LogFormat::Mcap, records).unwrap();
     path

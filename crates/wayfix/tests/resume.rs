@@ -15,7 +15,7 @@ use std::{
 use common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_systems::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
 use wayfix_systems::slam::{AssociationRule, SavedMapError};
 use wayfix_systems::system::RunStep;
@@ -24,7 +24,7 @@ const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;
 
 fn records(log: &Path) -> Vec<Record> {
-    wayfix_sensor_log::open(log, &OpenOptions::default()).unwrap().read_all().0
+    wayfix_sensor_log::open(log, &LogOpenOptions::default()).unwrap().read_all().0
 }
 
 fn nearest_neighbour() -> PointSlamParams {

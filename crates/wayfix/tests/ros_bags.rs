@@ -7,7 +7,7 @@ mod common;
 use std::{fs, path::PathBuf};
 
 use common::{Outcome, wayfix};
-use wayfix_sensor_log::{LogFormat, OpenOptions, Record, RecordData, Stamp, Velocity, open, write};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, Record, RecordData, Stamp, Velocity, open, write};
 
 /// A drive in a room of 8 m by 6 m, recorded with the Python package rosbags (xtask/clients/ros_bags.py): the laser hangs head down, turned
 /// by 0.5 rad, and odometry says 5 % too much.
@@ -61,7 +61,7 @@ fn a_robot_that_tells_its_velocity_only_maps_the_same_walls() {
     let velocity = RecordData::Velocity(Velocity { linear: 0.5, angular: 0.5 / 1.5 });
     let is_first = |stamp: &mut Option<Stamp>, now: Stamp| stamp.replace(now) != Some(now);
     let mut last = None;
-    let records = open(bag(), &OpenOptions::default()).unwrap().flat_map(|record| {
+    let records = open(bag(), &LogOpenOptions::default()).unwrap().flat_map(|record| {
         let told = Record { stamp: record.stamp, data: velocity.clone() };
         let told = is_first(&mut last, record.stamp).then_some(told);
         let kept = (!matches!(record.data, RecordData::OdometryIncrement(_))).then_some(record);

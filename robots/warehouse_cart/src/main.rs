@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let filter = SlamParams {
         linearization_point: LinearizationPoint::FirstEstimates, // laps: the standard form would grow too sure of its heading
-        confirmation: LandmarkConfirmationParams { min_detections: 3, max_missed: Some(10), ..LandmarkConfirmationParams::default() },
+        confirmation: LandmarkConfirmationParams { min_detections: 3, max_consecutive_misses: Some(10), ..LandmarkConfirmationParams::default() },
         ..SlamParams::default()
     };
     let mut association = JointCompatibility::new(JointCompatibilityParams::default())?;

@@ -19,9 +19,7 @@ pub(super) fn run(args: &[String]) -> Result<ExitCode> {
         [report] => report.into(),
         _ => bail!("usage: cargo xtask docs --figures [REPORT.json]"),
     };
-    let text = std::fs::read_to_string(&report)
-        .with_context(|| format!("{}: `cargo xtask regress` writes it", report.display()))?;
-    let report: Value = serde_json::from_str(&text)?;
+    let report = read(&report)?;
     for page in pages(&shell::root().join("docs"))? {
         let text = std::fs::read_to_string(&page)?;
         let written = with_tables(&text, &report).with_context(|| page.display().to_string())?;
@@ -31,6 +29,13 @@ pub(super) fn run(args: &[String]) -> Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The report in the file of this name.
+pub(super) fn read(report: &Path) -> Result<Value> {
+    let text = std::fs::read_to_string(report)
+        .with_context(|| format!("{}: `cargo xtask regress` writes it", report.display()))?;
+    Ok(serde_json::from_str(&text)?)
 }
 
 fn pages(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
@@ -94,7 +99,8 @@ fn number(value: &Value) -> Option<String> {
     Some(if digits > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text })
 }
 
-fn measured(metric: &Value) -> String {
+/// Value, unit, and whether it is outside of its bound.
+pub(crate) fn measured(metric: &Value) -> String {
     let value = number(&metric["value"]).unwrap_or_else(|| "–".to_owned());
     let missed = (metric["pass"] == Value::Bool(false)).then(|| "(missed)".to_owned());
     let unit = Some(text(&metric["unit"])).filter(|unit| !unit.is_empty());

@@ -9,14 +9,28 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use serde_json::Value;
 
 use crate::shell::{self, available};
+use crate::tidy;
+pub(crate) use figures::measured;
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     if let [flag, report @ ..] = args
         && flag == "--figures"
     {
         return figures::run(report);
+    }
+    if let [flag, report @ ..] = args
+        && flag == "--papers"
+    {
+        let report = match report {
+            [] => Value::Null,
+            [report] => figures::read(report.as_ref())?,
+            _ => bail!("usage: cargo xtask docs --papers [REPORT.json]"),
+        };
+        tidy::papers::write(&report)?;
+        return Ok(ExitCode::SUCCESS);
     }
     let (flags, packages): (Vec<_>, Vec<_>) = args.iter().partition(|arg| arg.starts_with('-'));
     let open = flags.iter().any(|flag| *flag == "--open");

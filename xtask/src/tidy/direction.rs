@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 18] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -12,6 +12,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("integrity", &[]),
     ("line-extract", &[]),
     ("scan-match", &["estimation-traits"]),
+    ("smoother", &["estimation-traits", "gaussian-core"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "integrity", "kalman", "particle", "color-map"]),
@@ -46,7 +47,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
 const UNRESTRICTED: [&str; 3] = ["wayfix", "experiments", "xtask"];
 
 /// Crates that must not depend on images.
-const IMAGE_FREE: [&str; 8] = [
+const IMAGE_FREE: [&str; 9] = [
     "estimation-traits",
     "integrity",
     "gaussian-core",
@@ -55,6 +56,7 @@ const IMAGE_FREE: [&str; 8] = [
     "line-extract",
     "scan-match",
     "slam-ekf",
+    "smoother",
 ];
 
 const WHY_TABLE: &str = "see the direction table in docs/architecture.md and xtask/src/tidy/direction.rs";

@@ -11,6 +11,7 @@ mod manifest;
 mod members;
 mod msrv;
 mod names;
+pub(crate) mod papers;
 mod purity;
 mod size;
 mod text;
@@ -75,6 +76,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(text::words::check(&sources));
     findings.extend(text::pages::check(&sources));
     findings.extend(text::figures::check(&sources));
+    findings.extend(papers::check(&sources));
     findings.extend(folders::check(&sources));
     findings.extend(size::lengths(&sources));
     findings.extend(size::weights(&files::weights(&paths)));

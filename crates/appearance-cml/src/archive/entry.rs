@@ -4,7 +4,7 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::bytes::{Reader, Writer};
 use crate::{
-    PanoramaDescriptor, PlaceComponent, ReferenceId, ReferenceView, ViewDifferenceSample, ViewDistanceScale,
+    PanoramaDescriptor, PlaceComponent, ReferenceId, ReferenceView, ViewDifferenceModel, ViewDifferenceSample,
 };
 
 /// Something that a map has, or that has become of it.
@@ -17,7 +17,7 @@ pub(super) enum Entry {
     /// One is gone.
     Forgotten(ReferenceId),
     /// How views change with the lag, and the number of the next reference.
-    Scale(ViewDistanceScale, u32),
+    Scale(ViewDifferenceModel, u32),
     /// Where the robot may be; `None` for anywhere.
     State(Option<GaussianMixture<Pose2<f64>>>),
 }
@@ -116,7 +116,7 @@ fn read_places(reader: &mut Reader) -> Option<ReferenceView> {
     Some(reference)
 }
 
-fn write_scale(scale: &ViewDistanceScale, writer: &mut Writer) {
+fn write_scale(scale: &ViewDifferenceModel, writer: &mut Writer) {
     let near: Vec<ViewDifferenceSample> = scale.near().collect();
     let ahead: Vec<ViewDifferenceSample> = scale.ahead().collect();
     for samples in [&near, &ahead] {
@@ -128,7 +128,7 @@ fn write_scale(scale: &ViewDistanceScale, writer: &mut Writer) {
     writer.f64s(far);
 }
 
-fn read_scale(reader: &mut Reader) -> Option<ViewDistanceScale> {
+fn read_scale(reader: &mut Reader) -> Option<ViewDifferenceModel> {
     let samples = |reader: &mut Reader| -> Option<Vec<ViewDifferenceSample>> {
         let n = reader.count(16)?;
         (0..n).map(|_| reader.f64s().map(|[lag, distance]| ViewDifferenceSample { lag, distance })).collect()
@@ -136,7 +136,7 @@ fn read_scale(reader: &mut Reader) -> Option<ViewDistanceScale> {
     let (near, ahead) = (samples(reader)?, samples(reader)?);
     let n = reader.count(8)?;
     let far: Option<Vec<f64>> = (0..n).map(|_| reader.f64()).collect();
-    ViewDistanceScale::from_parts(&near, &ahead, &far?).ok()
+    ViewDifferenceModel::from_parts(&near, &ahead, &far?).ok()
 }
 
 fn write_state(state: Option<&GaussianMixture<Pose2<f64>>>, writer: &mut Writer) {

@@ -10,13 +10,13 @@ use crate::{AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, Ref
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{AppearanceMap, ArchivedViewFormat, MapArchiveJournal, MapArchive, PanoramaDescriptor, PanoramaParams};
+/// use wayfix_appearance_cml::{AppearanceMap, ArchivedDescriptorFormat, MapArchiveAppender, MapArchive, PanoramaDescriptor, PanoramaDescriptorParams};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
-/// let params = ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 25) };
+/// let params = ArchivedDescriptorFormat { views: PanoramaDescriptorParams::default(), size: (120, 25) };
 /// let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let mut bytes = MapArchive::to_bytes(&params, &map, None);
-/// let mut journal = MapArchiveJournal::after(&map);
+/// let mut journal = MapArchiveAppender::after(&map);
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 /// map.teach(PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, -5])?, &pose)?;
 /// bytes.extend(journal.changes(&map, None));
@@ -24,11 +24,11 @@ use crate::{AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, Ref
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MapArchiveJournal {
+pub struct MapArchiveAppender {
     written: BTreeMap<ReferenceId, ReferenceView>,
 }
 
-impl MapArchiveJournal {
+impl MapArchiveAppender {
     /// A journal that goes on from the bytes of this map.
     pub fn after<S: ReferenceSearch<PanoramaDescriptor>>(map: &AppearanceMap<PanoramaDescriptor, S>) -> Self {
         Self { written: map.references().clone() }

@@ -4,12 +4,12 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::GaussianMixture;
 
 use super::{
-    ArchivedViewFormat, MapArchiveError,
+    ArchivedDescriptorFormat, MapArchiveError,
     bytes::{Reader, Writer},
     entry::Entry,
 };
 use crate::{
-    AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, ReferenceView, ViewDistanceScale,
+    AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, ReferenceView, ViewDifferenceModel,
 };
 
 const MAGIC: [u8; 8] = *b"WAYFIXAM";
@@ -19,24 +19,24 @@ const VERSION: u32 = 3;
 /// A map of panoramas, where the robot is in it, and what views were described with.
 ///
 /// ```
-/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveEnd, ArchivedViewFormat, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaParams};
-/// let params = ArchivedViewFormat { views: PanoramaParams::default(), size: (120, 25) };
+/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveCompleteness, ArchivedDescriptorFormat, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaDescriptorParams};
+/// let params = ArchivedDescriptorFormat { views: PanoramaDescriptorParams::default(), size: (120, 25) };
 /// let map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let bytes = MapArchive::to_bytes(&params, &map, None);
 /// let archive = MapArchive::from_bytes(&bytes)?;
-/// assert_eq!(archive.end(), MapArchiveEnd::Whole);
+/// assert_eq!(archive.end(), MapArchiveCompleteness::Whole);
 /// let (map, state): (AppearanceMap<PanoramaDescriptor, LinearSearch<_>>, _) = archive.into_map(&params)?;
 /// assert!(map.is_empty() && state.is_none());
 /// # Ok::<(), wayfix_appearance_cml::MapArchiveError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct MapArchive {
-    params: ArchivedViewFormat,
+    params: ArchivedDescriptorFormat,
     references: BTreeMap<ReferenceId, (PanoramaDescriptor, ReferenceView)>,
-    scale: ViewDistanceScale,
+    scale: ViewDifferenceModel,
     next: u32,
     state: Option<GaussianMixture<Pose2<f64>>>,
-    end: MapArchiveEnd,
+    end: MapArchiveCompleteness,
 }
 
 /// A map, and where the robot may be in it; `None` for anywhere.
@@ -44,7 +44,7 @@ pub type MapAndState<S> = (AppearanceMap<PanoramaDescriptor, S>, Option<Gaussian
 
 /// How the bytes of a map end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MapArchiveEnd {
+pub enum MapArchiveCompleteness {
     /// After a whole entry.
     Whole,
     /// In the middle of one, which is left out: writing it was interrupted.
@@ -57,7 +57,7 @@ pub enum MapArchiveEnd {
 impl MapArchive {
     /// The bytes of a map, and of where the robot may be.
     pub fn to_bytes<S: ReferenceSearch<PanoramaDescriptor>>(
-        params: &ArchivedViewFormat,
+        params: &ArchivedDescriptorFormat,
         map: &AppearanceMap<PanoramaDescriptor, S>,
         state: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Vec<u8> {
@@ -82,10 +82,10 @@ impl MapArchive {
         let mut archive = Self {
             params,
             references: BTreeMap::new(),
-            scale: ViewDistanceScale::default(),
+            scale: ViewDifferenceModel::default(),
             next: 0,
             state: None,
-            end: MapArchiveEnd::Whole,
+            end: MapArchiveCompleteness::Whole,
         };
         let mut index = 0;
         while !rest.is_empty() {
@@ -98,7 +98,7 @@ impl MapArchive {
                     rest = after;
                 }
                 Next::CutShort => {
-                    archive.end = MapArchiveEnd::Interrupted { whole_bytes: offset };
+                    archive.end = MapArchiveCompleteness::Interrupted { whole_bytes: offset };
                     break;
                 }
                 Next::Damaged => return Err(MapArchiveError::Entry { index, offset }),
@@ -109,12 +109,12 @@ impl MapArchive {
     }
 
     /// What its views were described with.
-    pub fn params(&self) -> &ArchivedViewFormat {
+    pub fn params(&self) -> &ArchivedDescriptorFormat {
         &self.params
     }
 
     /// How the bytes ended.
-    pub fn end(&self) -> MapArchiveEnd {
+    pub fn end(&self) -> MapArchiveCompleteness {
         self.end
     }
 
@@ -134,7 +134,7 @@ impl MapArchive {
     /// When the map was learned with other parameters, or its parts make no map.
     pub fn into_map<S: ReferenceSearch<PanoramaDescriptor> + Default>(
         self,
-        params: &ArchivedViewFormat,
+        params: &ArchivedDescriptorFormat,
     ) -> Result<MapAndState<S>, MapArchiveError> {
         params.check(&self.params)?;
         let mut search = S::default();
@@ -177,7 +177,7 @@ pub(super) fn append(entry: &Entry, bytes: &mut Vec<u8>) {
     *bytes = writer.0;
 }
 
-fn header(params: &ArchivedViewFormat) -> Vec<u8> {
+fn header(params: &ArchivedDescriptorFormat) -> Vec<u8> {
     let mut content = Writer::default();
     params.write(&mut content);
     let mut writer = Writer(MAGIC.to_vec());
@@ -190,7 +190,7 @@ fn header(params: &ArchivedViewFormat) -> Vec<u8> {
 }
 
 /// The parameters, and the bytes after the header.
-fn open(bytes: &[u8]) -> Result<(ArchivedViewFormat, &[u8]), MapArchiveError> {
+fn open(bytes: &[u8]) -> Result<(ArchivedDescriptorFormat, &[u8]), MapArchiveError> {
     let rest = bytes.strip_prefix(&MAGIC).ok_or(MapArchiveError::NotAMap)?;
     let mut reader = Reader(rest);
     let found = reader.u32().ok_or(MapArchiveError::Header)?;
@@ -204,7 +204,7 @@ fn open(bytes: &[u8]) -> Result<(ArchivedViewFormat, &[u8]), MapArchiveError> {
     if sum != checksum(&bytes[..summed]) {
         return Err(MapArchiveError::Header);
     }
-    let params = ArchivedViewFormat::read(content).ok_or(MapArchiveError::Header)?;
+    let params = ArchivedDescriptorFormat::read(content).ok_or(MapArchiveError::Header)?;
     Ok((params, reader.0))
 }
 

@@ -16,6 +16,6 @@ mod map_archive;
 mod params;
 
 pub use error::MapArchiveError;
-pub use journal::MapArchiveJournal;
-pub use map_archive::{MapAndState, MapArchive, MapArchiveEnd};
-pub use params::ArchivedViewFormat;
+pub use journal::MapArchiveAppender;
+pub use map_archive::{MapAndState, MapArchive, MapArchiveCompleteness};
+pub use params::ArchivedDescriptorFormat;

@@ -2,18 +2,18 @@ use super::{
     MapArchiveError,
     bytes::{Reader, Writer},
 };
-use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaParams};
+use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaDescriptorParams};
 
 /// Parameters that a map archive and its reader must share: the descriptor and the size of the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArchivedViewFormat {
+pub struct ArchivedDescriptorFormat {
     /// How panoramas are described.
-    pub views: PanoramaParams,
+    pub views: PanoramaDescriptorParams,
     /// Columns and rows of a panorama.
     pub size: (usize, usize),
 }
 
-impl ArchivedViewFormat {
+impl ArchivedDescriptorFormat {
     pub(super) fn write(&self, writer: &mut Writer) {
         let views = &self.views;
         for whole in [views.n_rings, views.n_sectors, views.n_harmonics, self.size.0, self.size.1] {
@@ -49,7 +49,7 @@ impl ArchivedViewFormat {
             _ => return None,
         };
         let [min_contrast, max_saturated_share, smoothing] = reader.f64s()?;
-        let views = PanoramaParams {
+        let views = PanoramaDescriptorParams {
             n_rings,
             n_sectors,
             n_harmonics,

@@ -59,7 +59,7 @@ fn share(a: &PoseHypothesis, b: &PoseHypothesis) -> f64 {
 }
 
 /// $`C^{-1} = (1-α) C_a^{-1} + α C_b^{-1}`$, $`μ = C ((1-α) C_a^{-1} μ_a + α C_b^{-1} μ_b)`$ in the chart at $`μ_a`$.
-/// [Gross et al. 2005, Eqs. 3-4, the inverses put in]
+/// [Gross et al. 2005, Eqs. 3–4, the inverses put in]
 fn weighted_intersection(
     a: &Matrix3<f64>,
     (mean_b, b): (&Vector3<f64>, &Matrix3<f64>),

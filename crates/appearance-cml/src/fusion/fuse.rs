@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use wayfix_gaussian_core::Gaussian;
 
-use super::{FusionParams, GaussianMixtureLikelihood, MixtureWeighting, UniformComponent, combine};
+use super::{GaussianMixtureLikelihood, MixtureFusionParams, MixtureWeighting, UniformComponent, combine};
 use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 
 /// Fuses a predicted mixture with a measurement. The weights are not normalized, so that further sources can be fused.
@@ -14,11 +14,11 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 ///
 /// The uniform component gives $`w_u w_b (2π)^{3/2} |C_b|^{1/2} / V`$ and $`w_u m`$; a peak wider than the map leaves it uniform,
 /// with the share $`\sqrt{2π} σ_θ / 2π`$ of the headings. With [`MixtureWeighting::Support`] components are fused in pairs
-/// or copied, and nothing is uniform any more. [Gross et al. 2005, Eqs. 2-8]
+/// or copied, and nothing is uniform any more. [Gross et al. 2005, Eqs. 2–8, Fig. 2]
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{FusionParams, PoseHypothesis, GaussianMixtureLikelihood, UniformComponent, fuse};
+/// use wayfix_appearance_cml::{MixtureFusionParams, PoseHypothesis, GaussianMixtureLikelihood, UniformComponent, fuse};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceMapError> {
@@ -28,7 +28,7 @@ use crate::{AppearanceMapError, PoseHypothesis, separation_squared};
 /// let moved = [at(0.0, 0.5)?, at(10.0, 0.5)?];
 /// let seen = GaussianMixtureLikelihood { peaks: vec![at(0.1, 0.4)?], floor: 0.1 };
 /// let nowhere_else = UniformComponent { weight: 0.0, volume: 1.0 };
-/// let (fused, _) = fuse(&moved, nowhere_else, &seen, &FusionParams::as_published())?;
+/// let (fused, _) = fuse(&moved, nowhere_else, &seen, &MixtureFusionParams::as_published())?;
 /// let fused = PoseHypothesis::into_mixture(fused)?;
 /// assert!(fused.weight(0) > 0.6 && fused.weight(1) < 0.4); // 0.9 against 0.5
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
@@ -40,7 +40,7 @@ pub fn fuse(
     predicted: &[PoseHypothesis],
     uniform: UniformComponent,
     observed: &GaussianMixtureLikelihood,
-    params: &FusionParams,
+    params: &MixtureFusionParams,
 ) -> Result<(Vec<PoseHypothesis>, UniformComponent), AppearanceMapError> {
     for hypothesis in predicted.iter().chain(&observed.peaks) {
         // A hypothesis without a counterpart would pass unchecked otherwise.
@@ -118,7 +118,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// $`w = w_a w_b / \hat w_a + w_b w_a / \hat w_b`$ with the sums $`\hat w`$ of the weights of the counterparts. [Gross et al. 2005, Eqs. 6-8]
+/// $`w = w_a w_b / \hat w_a + w_b w_a / \hat w_b`$ with the sums $`\hat w`$ of the weights of the counterparts. [Gross et al. 2005, Eqs. 6–8]
 fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis], pairs: &[Pair]) -> f64 {
     let of_a = pairs.iter().filter(|p| p.predicted == pair.predicted).map(|p| observed[p.observed].weight);
     let of_b = pairs.iter().filter(|p| p.observed == pair.observed).map(|p| predicted[p.predicted].weight);
@@ -147,7 +147,7 @@ mod tests {
     fn fused(
         predicted: &[PoseHypothesis],
         peak: &PoseHypothesis,
-        params: &FusionParams,
+        params: &MixtureFusionParams,
     ) -> Vec<PoseHypothesis> {
         let uniform = UniformComponent { weight: 0.0, volume: 1.0 };
         let seen = GaussianMixtureLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn evidence_is_the_integral_over_the_component() {
         let (a, b) = (at(0.0, 3.0, 1.0), at(4.0, 0.3, 0.5));
-        let weight = fused(std::slice::from_ref(&a), &b, &FusionParams::default())[0].weight;
+        let weight = fused(std::slice::from_ref(&a), &b, &MixtureFusionParams::default())[0].weight;
         // Numerically, with the standard normal of `a` in x; y and heading at the centre give the ratio of their σ.
         let density = |x: f64| (-0.5 * (x / 3.0).powi(2)).exp() / (3.0 * std::f64::consts::TAU.sqrt());
         let peak = |x: f64| 0.5 * (-0.5 * ((x - 4.0) / 0.3).powi(2)).exp();
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn missed_component_keeps_the_floor() {
-        let far = fused(&[at(0.0, 0.3, 1.0)], &at(8.0, 0.3, 0.5), &FusionParams::default());
+        let far = fused(&[at(0.0, 0.3, 1.0)], &at(8.0, 0.3, 0.5), &MixtureFusionParams::default());
         assert!(far.iter().any(|h| h.gaussian.mean().x() == 0.0 && h.weight == FLOOR));
     }
 
@@ -177,7 +177,7 @@ mod tests {
     fn repeated_match_moves_the_weight_there() {
         let (mut robot, place) = (vec![at(0.0, 1.0, 1.0)], at(1.5, 0.3, 0.5));
         for _ in 0..8 {
-            robot = fused(&robot, &place, &FusionParams::default());
+            robot = fused(&robot, &place, &MixtureFusionParams::default());
         }
         let there: f64 = robot.iter().filter(|h| h.gaussian.mean().x() > 0.75).map(|h| h.weight).sum();
         let all: f64 = robot.iter().map(|h| h.weight).sum();
@@ -189,13 +189,13 @@ mod tests {
         let uniform = UniformComponent { weight: 1.0, volume: 1000.0 };
         let peak = PoseHypothesis::new(0.5, at(0.0, 0.3, 1.0).gaussian);
         let seen = GaussianMixtureLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
-        let (places, left) = fuse(&[], uniform, &seen, &FusionParams::default()).unwrap();
+        let (places, left) = fuse(&[], uniform, &seen, &MixtureFusionParams::default()).unwrap();
         let volume = (2.0 * std::f64::consts::PI).powf(1.5) * (0.3 * 0.3 * 0.1);
         assert!((places[0].weight - 0.5 * volume / 1000.0).abs() < 1e-12);
         assert_eq!(left.weight, FLOOR);
         // A peak wider than the map tells no place.
         let wide = GaussianMixtureLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
-        let (places, left) = fuse(&[], uniform, &wide, &FusionParams::default()).unwrap();
+        let (places, left) = fuse(&[], uniform, &wide, &MixtureFusionParams::default()).unwrap();
         let headings = 0.1 / std::f64::consts::TAU.sqrt();
         assert!(places.is_empty() && (left.weight - 0.5 * headings - FLOOR).abs() < 1e-12);
         // A source of probability 0.9 takes 0.9 of it, whatever the extent of the map.
@@ -203,15 +203,18 @@ mod tests {
             vec![PoseHypothesis { weight: 0.9, ..peak }],
             &uniform,
         );
-        let (places, left) = fuse(&[], uniform, &source, &FusionParams::default()).unwrap();
+        let (places, left) = fuse(&[], uniform, &source, &MixtureFusionParams::default()).unwrap();
         assert!((places[0].weight - 0.9).abs() < 1e-12 && (left.weight - 0.1).abs() < 1e-12);
     }
 
     #[test]
     fn published_pairs_leave_no_copy() {
         let [robot, place] = [at(0.0, 0.3, 1.0), at(0.1, 0.3, 0.5)];
-        assert_eq!(fused(std::slice::from_ref(&robot), &place, &FusionParams::as_published()).len(), 1);
-        assert_eq!(fused(&[robot], &place, &FusionParams::default()).len(), 3);
+        assert_eq!(
+            fused(std::slice::from_ref(&robot), &place, &MixtureFusionParams::as_published()).len(),
+            1
+        );
+        assert_eq!(fused(&[robot], &place, &MixtureFusionParams::default()).len(), 3);
     }
 
     #[test]
@@ -219,6 +222,6 @@ mod tests {
         let flat = Gaussian::from_parts_unchecked(Pose2::new(9.0, 0.0, 0.0), Matrix3::zeros());
         let seen = GaussianMixtureLikelihood { peaks: vec![PoseHypothesis::new(1.0, flat)], floor: FLOOR };
         let uniform = UniformComponent { weight: 0.0, volume: 1.0 };
-        assert!(fuse(&[at(0.0, 0.3, 1.0)], uniform, &seen, &FusionParams::default()).is_err());
+        assert!(fuse(&[at(0.0, 0.3, 1.0)], uniform, &seen, &MixtureFusionParams::default()).is_err());
     }
 }

@@ -10,5 +10,5 @@ mod split;
 pub use combine::combine;
 pub use fuse::fuse;
 pub use likelihood::{GaussianMixtureLikelihood, UniformComponent};
-pub use params::{FusionParams, GaussianFusionRule, MixtureWeighting};
+pub use params::{GaussianFusionRule, MixtureFusionParams, MixtureWeighting};
 pub use source::{PoseHypothesisSource, PositionFix};

@@ -9,7 +9,7 @@ use crate::{AppearanceMapError, check};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum GaussianFusionRule {
-    /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
+    /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3–5]
     WeightedIntersection,
     /// Split covariance intersection: fuses the independent parts of the covariances and intersects the rest, with the share of
     /// least determinant. [Julier & Uhlmann 2001]
@@ -26,7 +26,7 @@ pub enum GaussianFusionRule {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MixtureWeighting {
-    /// Weights of matching components add up; the others are copied. [Gross et al. 2005, Eqs. 6-8]
+    /// Weights of matching components add up; the others are copied. [Gross et al. 2005, Eqs. 6–8]
     Support,
     /// Weights are probabilities: each predicted component is integrated over the likelihood ([`fuse`](crate::fuse)).
     #[default]
@@ -36,8 +36,8 @@ pub enum MixtureWeighting {
 /// How two mixtures over poses are fused.
 ///
 /// ```
-/// use wayfix_appearance_cml::FusionParams;
-/// assert!(FusionParams::default().gate > FusionParams::as_published().gate);
+/// use wayfix_appearance_cml::MixtureFusionParams;
+/// assert!(MixtureFusionParams::default().gate > MixtureFusionParams::as_published().gate);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -46,7 +46,7 @@ pub enum MixtureWeighting {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct FusionParams {
+pub struct MixtureFusionParams {
     /// Squared Mahalanobis distance below which two poses mean one place: $`γ`$ of Eq. 2, $`δ`$ of Eq. 12 and $`d^{max}`$ of Eqs. 15-17.
     /// Default 16.3: 99.9 % of a chi-squared of three degrees of freedom.
     pub gate: f64,
@@ -56,7 +56,7 @@ pub struct FusionParams {
     pub mixture_weighting: MixtureWeighting,
 }
 
-impl Default for FusionParams {
+impl Default for MixtureFusionParams {
     fn default() -> Self {
         Self {
             gate: 16.3,
@@ -66,7 +66,7 @@ impl Default for FusionParams {
     }
 }
 
-impl FusionParams {
+impl MixtureFusionParams {
     /// As published: Eqs. 2-8 with the gate at 95 %.
     pub fn as_published() -> Self {
         Self {

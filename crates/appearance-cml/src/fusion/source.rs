@@ -6,7 +6,7 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture, check_covariance};
 
 use crate::{AppearanceMapError, PoseHypothesis};
 
-/// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map.
+/// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map. [Gross et al. 2005, Fig. 2]
 ///
 /// **Law**: weights are probabilities in [0, 1]; 1 means that no other pose is possible.
 pub trait PoseHypothesisSource {

@@ -4,36 +4,36 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 use super::belief::Belief;
 use super::pose_history::PoseHistory;
 use super::relocalize::KidnapTest;
-use super::{Event, Learning, LocalizerParams, Start, UpdateOutcome};
+use super::{LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior, ViewUpdateOutcome};
 use crate::model::{HEADING_SIGMA, ScaleLearner};
 use crate::state::Motion;
 use crate::{
-    AppearanceMap, AppearanceMapError, Descriptor, LinearSearch, OdometryNoise, PoseHypothesisSource,
-    ReferenceId, ReferenceSearch, separation_squared,
+    AppearanceMap, AppearanceMapError, LinearSearch, OdometryNoise, PoseHypothesisSource, ReferenceId,
+    ReferenceSearch, ViewDescriptor, separation_squared,
 };
 
-/// Localizes in an appearance map, and learns it. [Gross et al. 2005]
+/// Localizes in an appearance map, and learns it. [Gross et al. 2005, Fig. 1]
 ///
 /// [`predict`](Self::predict) with each odometry increment, [`update`](Self::update) with each view. With an empty map and a known start the
 /// robot builds the map; [`teach`](Self::teach) builds one from known poses. `D` is the view, `S` the search among views, and `M` the motion
 /// model.
 ///
 /// ```
-/// # use wayfix_appearance_cml::{ViewDifference, Descriptor};
+/// # use wayfix_appearance_cml::{ViewDifference, ViewDescriptor};
 /// # #[derive(Clone, Debug)]
 /// # struct Brightness(f64);
-/// # impl Descriptor for Brightness {
+/// # impl ViewDescriptor for Brightness {
 /// #     fn compare(&self, other: &Self) -> ViewDifference {
 /// #         ViewDifference { distance: (self.0 - other.0).abs(), rotation: 0.0 }
 /// #     }
 /// # }
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{AppearanceLocalizer, LocalizerParams, Start};
+/// use wayfix_appearance_cml::{AppearanceLocalizer, LocalizerParams, StartPosePrior};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let start = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(0.01, 0.01, 0.01))?;
 /// let mut localizer: AppearanceLocalizer<Brightness> =
-///     AppearanceLocalizer::new(LocalizerParams::default(), Start::Known(start))?;
+///     AppearanceLocalizer::new(LocalizerParams::default(), StartPosePrior::Known(start))?;
 /// for step in 0..40 {
 ///     localizer.update(Brightness(0.1 * f64::from(step)))?;
 ///     localizer.predict(&Pose2::new(0.25, 0.0, 0.0))?;
@@ -63,17 +63,17 @@ pub struct AppearanceLocalizer<D, S = LinearSearch<D>, M = OdometryNoise> {
     pub(super) n_views: u32,
 }
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D> + Default> AppearanceLocalizer<D, S> {
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D> + Default> AppearanceLocalizer<D, S> {
     /// A localizer with an empty map.
     ///
     /// # Errors
     /// Returns an error if a parameter is out of range or the start is invalid.
-    pub fn new(params: LocalizerParams, start: Start) -> Result<Self, AppearanceMapError> {
+    pub fn new(params: LocalizerParams, start: StartPosePrior) -> Result<Self, AppearanceMapError> {
         Self::with_map(params, AppearanceMap::default(), start)
     }
 }
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// A localizer with a map, and with the motion model [`LocalizerParams::odometry`].
     ///
     /// # Errors
@@ -81,13 +81,13 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     pub fn with_map(
         params: LocalizerParams,
         map: AppearanceMap<D, S>,
-        start: Start,
+        start: StartPosePrior,
     ) -> Result<Self, AppearanceMapError> {
         Self::with_motion_model(params, map, start, params.odometry)
     }
 }
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
 where
     M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
 {
@@ -98,7 +98,7 @@ where
     pub fn with_motion_model(
         params: LocalizerParams,
         map: AppearanceMap<D, S>,
-        start: Start,
+        start: StartPosePrior,
         motion_model: M,
     ) -> Result<Self, AppearanceMapError> {
         params.validate()?;
@@ -145,7 +145,7 @@ where
     ///
     /// # Errors
     /// Returns an error if the start is invalid.
-    pub fn restart(&mut self, start: Start) -> Result<(), AppearanceMapError> {
+    pub fn restart(&mut self, start: StartPosePrior) -> Result<(), AppearanceMapError> {
         let (belief, kidnap) = (Belief::of_start(start)?, KidnapTest::new(&self.params)?);
         self.was_unimodal = belief.state.is_some();
         (self.belief, self.kidnap, self.motion) = (belief, kidnap, Motion::none());
@@ -173,7 +173,7 @@ where
     /// # Errors
     /// Returns an error if the belief is singular or a number is not finite; state and map are then unchanged. Returns
     /// [`AppearanceMapError::ReferenceIdsExhausted`] if a new reference finds no number; the map is then unchanged, and the state is updated.
-    pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceMapError> {
+    pub fn update(&mut self, view: D) -> Result<ViewUpdateOutcome, AppearanceMapError> {
         self.update_with(view, &[])
     }
 
@@ -185,7 +185,7 @@ where
         &mut self,
         view: D,
         sources: &[&dyn PoseHypothesisSource],
-    ) -> Result<UpdateOutcome, AppearanceMapError> {
+    ) -> Result<ViewUpdateOutcome, AppearanceMapError> {
         let view = self.is_news().then_some(view);
         let matched = view.as_ref().map(|view| self.match_view(view)).transpose()?; // Eqs. 9-10
         let likelihood = matched.as_ref().map(|matched| &matched.likelihood);
@@ -200,12 +200,12 @@ where
             self.has_seen = true;
             self.n_views = self.n_views.wrapping_add(1);
             let motion = std::mem::replace(&mut self.motion, Motion::none());
-            if self.params.learning == Learning::Adapting {
+            if self.params.map_learning == MapLearning::Adapting {
                 self.learn(view, &motion, &mut events)?; // Eqs. 11-19
             }
         }
         let n_detections = matched.map_or(0, |matched| matched.n_detections);
-        Ok(UpdateOutcome { events, estimate: self.one_place().cloned(), n_detections })
+        Ok(ViewUpdateOutcome { events, estimate: self.one_place().cloned(), n_detections })
     }
 
     /// Learns that `view` is seen from the known `pose`. The belief stays.
@@ -235,7 +235,7 @@ where
 
     /// The pose, if the belief is unimodal and no alternative is likely.
     pub(super) fn one_place(&self) -> Option<&Gaussian<Pose2<f64>>> {
-        let min_weight = self.params.unimodal_weight;
+        let min_weight = self.params.unimodal_min_weight;
         self.belief.unimodal(min_weight).filter(|_| self.kidnap.probability() <= 1.0 - min_weight)
     }
 
@@ -245,7 +245,7 @@ where
         belief: Belief,
         kidnap: KidnapTest,
         is_moved: bool,
-    ) -> Result<Vec<Event>, AppearanceMapError> {
+    ) -> Result<Vec<LocalizerEvent>, AppearanceMapError> {
         let is_elsewhere = match (belief.heaviest(), self.belief.heaviest()) {
             (Some(new), Some(old)) => separation_squared(new, old)? > self.params.fusion.gate,
             _ => false,
@@ -254,11 +254,11 @@ where
         let is_unimodal = self.one_place().is_some();
         let mut events = Vec::new();
         match (std::mem::replace(&mut self.was_unimodal, is_unimodal), is_unimodal) {
-            (true, false) => events.push(Event::Lost),
-            (false, true) => events.push(Event::Found),
+            (true, false) => events.push(LocalizerEvent::Lost),
+            (false, true) => events.push(LocalizerEvent::Found),
             _ => {}
         }
-        events.extend((is_moved || is_elsewhere).then_some(Event::Relocated));
+        events.extend((is_moved || is_elsewhere).then_some(LocalizerEvent::Relocated));
         Ok(events)
     }
 }

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
-use super::{LocalizerParams, Start};
+use super::{LocalizerParams, StartPosePrior};
 use crate::{
     AppearanceMapError, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesis, PoseHypothesisSource,
     UniformComponent, fuse, propagate, simplify, unimodal,
@@ -17,7 +17,7 @@ pub(super) struct Belief {
 }
 
 impl Belief {
-    pub(super) fn of_start(start: Start) -> Result<Self, AppearanceMapError> {
+    pub(super) fn of_start(start: StartPosePrior) -> Result<Self, AppearanceMapError> {
         let state = start.into_state()?;
         let uniform = if state.is_some() { 0.0 } else { 1.0 };
         Ok(Self { state, uniform })
@@ -25,7 +25,7 @@ impl Belief {
 
     /// A single pose.
     pub(super) fn at(pose: Gaussian<Pose2<f64>>) -> Result<Self, AppearanceMapError> {
-        Self::of_start(Start::Known(pose))
+        Self::of_start(StartPosePrior::Known(pose))
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {
@@ -56,7 +56,7 @@ impl Belief {
         Ok(Self { state: Some(GaussianMixture::from_log_weights(moved)?), ..*self })
     }
 
-    /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2-8]
+    /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2–8]
     ///
     /// The uniform component has at least the prior probability of a kidnapping, so that a source can contradict the prediction.
     pub(super) fn fused(
@@ -89,7 +89,7 @@ impl Belief {
         if fused.iter().all(|hypothesis| hypothesis.weight == 0.0) {
             return Ok(Self { state: None, uniform: 1.0 });
         }
-        let simplified = simplify(fused, &params.simplify)?;
+        let simplified = simplify(fused, &params.mixture_reduction)?;
         let total: f64 = simplified.iter().map(|hypothesis| hypothesis.weight).sum();
         let state = Some(PoseHypothesis::into_mixture(simplified)?);
         Ok(Self { state, uniform: uniform.weight / (uniform.weight + total) })

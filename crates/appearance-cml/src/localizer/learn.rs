@@ -2,15 +2,15 @@ use wayfix_estimation_traits::{MotionModel, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::pose_history::PoseHistory;
-use super::{AppearanceLocalizer, Event};
+use super::{AppearanceLocalizer, LocalizerEvent};
 use crate::state::Motion;
-use crate::{AppearanceMapError, Descriptor, ReferenceSearch};
+use crate::{AppearanceMapError, ReferenceSearch, ViewDescriptor};
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
 where
     M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
 {
-    /// Learns the views that the robot has left behind. [Gross et al. 2005, Secs. 2.1 and 2.3, Eqs. 11-19]
+    /// Learns the views that the robot has left behind. [Gross et al. 2005, Secs. 2.1 and 2.3, Eqs. 11–19]
     ///
     /// A view waits until it is a match radius away: then no view that matches it can confirm its pose. It waits longer while the belief is
     /// not unimodal or the previous hypothesis may return, and is given up after the distance for which that one is kept.
@@ -18,10 +18,10 @@ where
         &mut self,
         view: D,
         motion: &Motion,
-        events: &mut Vec<Event>,
+        events: &mut Vec<LocalizerEvent>,
     ) -> Result<(), AppearanceMapError> {
         let estimate = self.one_place().cloned();
-        if events.contains(&Event::Relocated) {
+        if events.contains(&LocalizerEvent::Relocated) {
             self.history = PoseHistory::default();
             self.learned_last = None;
         }
@@ -50,15 +50,15 @@ where
     fn learn_oldest(
         &mut self,
         pose: Option<Gaussian<Pose2<f64>>>,
-        events: &mut Vec<Event>,
+        events: &mut Vec<LocalizerEvent>,
     ) -> Result<(), AppearanceMapError> {
         let is_outlier = self.params.skip_outlier_views_in_mapping && self.is_outlier();
         let Some(view) = self.history.pop() else { return Ok(()) };
         self.learned_last = Some(view.clone());
         let Some(pose) = pose.filter(|_| !is_outlier) else { return Ok(()) };
         let learned = self.map.learn(view, &pose, &self.params.map, self.params.fusion.gate)?;
-        events.extend(learned.inserted.map(Event::NewReference));
-        events.extend(learned.forgotten.into_iter().map(Event::Forgotten));
+        events.extend(learned.inserted.map(LocalizerEvent::NewReference));
+        events.extend(learned.forgotten.into_iter().map(LocalizerEvent::Forgotten));
         Ok(())
     }
 

@@ -5,8 +5,8 @@ use super::belief::Belief;
 use super::{AppearanceLocalizer, LocalizerParams, PoseHypothesisRule};
 use crate::model::{GROUP_SIZE, N_FAR};
 use crate::{
-    AppearanceMap, AppearanceMapError, Descriptor, GaussianMixtureLikelihood, PoseHypothesis,
-    ReferenceSearch, interpolate, superpose,
+    AppearanceMap, AppearanceMapError, GaussianMixtureLikelihood, PoseHypothesis, ReferenceSearch,
+    ViewDescriptor, interpolate, superpose,
 };
 
 /// Likelihood of a view that does not match, relative to the peak of one that does: the probability that the best of the references of a wrong
@@ -19,7 +19,7 @@ pub(super) struct ViewMatch {
     pub(super) n_detections: usize,
 }
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
     /// The likelihood of a view. A robot that has only turned since the last one sees nothing new of its position, but compares other sectors
     /// for its heading: the position of the peaks becomes uncertain, and the rest independent, as the distance is short against half a step.
     pub(super) fn match_view(&self, view: &D) -> Result<ViewMatch, AppearanceMapError> {
@@ -37,8 +37,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
     }
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
-    /// The places that match the view. [Gross et al. 2005, Sec. 2.2, Eqs. 9-10]
+impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+    /// The places that match the view. [Gross et al. 2005, Sec. 2.2, Eqs. 9–10]
     ///
     /// The search covers the references around the belief. It covers the whole map if the pose is unknown, or if the belief reaches far places.
     pub(super) fn match_view(
@@ -59,8 +59,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
                     self.search_radius(component, &params.map, params.fusion.gate)
                         > self.scale().far_distance()
                 });
-                let is_wide = reaches_far || belief.uniform > 1.0 - params.unimodal_weight;
-                let n_anywhere = if is_wide { params.simplify.max_components } else { 0 };
+                let is_wide = reaches_far || belief.uniform > 1.0 - params.unimodal_min_weight;
+                let n_anywhere = if is_wide { params.mixture_reduction.max_components } else { 0 };
                 let matches =
                     self.place_matches(view, components, n_anywhere, (&params.map, params.fusion.gate));
                 let peaks = interpolate(&matches, components, self.scale())?;

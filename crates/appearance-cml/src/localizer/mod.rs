@@ -12,6 +12,6 @@ mod relocalize;
 mod start;
 
 pub use appearance_localizer::AppearanceLocalizer;
-pub use outcome::{Event, UpdateOutcome};
-pub use params::{Learning, LocalizerParams, PoseHypothesisRule, Recovery};
-pub use start::Start;
+pub use outcome::{LocalizerEvent, ViewUpdateOutcome};
+pub use params::{KidnappingTest, LocalizerParams, MapLearning, PoseHypothesisRule};
+pub use start::StartPosePrior;

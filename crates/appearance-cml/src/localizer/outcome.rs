@@ -6,12 +6,12 @@ use crate::ReferenceId;
 /// An event of the localizer.
 ///
 /// ```
-/// use wayfix_appearance_cml::{Event, ReferenceId};
-/// assert_ne!(Event::NewReference(ReferenceId(3)), Event::Forgotten(ReferenceId(3)));
+/// use wayfix_appearance_cml::{LocalizerEvent, ReferenceId};
+/// assert_ne!(LocalizerEvent::NewReference(ReferenceId(3)), LocalizerEvent::Forgotten(ReferenceId(3)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Event {
+pub enum LocalizerEvent {
     /// A view has become a reference.
     NewReference(ReferenceId),
     /// A reference was removed from the map.
@@ -27,13 +27,13 @@ pub enum Event {
 /// The result of one view.
 ///
 /// ```
-/// let nothing = wayfix_appearance_cml::UpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0 };
+/// let nothing = wayfix_appearance_cml::ViewUpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0 };
 /// assert!(nothing.estimate.is_none());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct UpdateOutcome {
+pub struct ViewUpdateOutcome {
     /// The events in order.
-    pub events: Vec<Event>,
+    pub events: Vec<LocalizerEvent>,
     /// The pose, if the belief is unimodal.
     pub estimate: Option<Gaussian<Pose2<f64>>>,
     /// Number of places that match the view.

@@ -1,18 +1,19 @@
 use wayfix_integrity::RelocalizationParams;
 
 use crate::{
-    AppearanceMapError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise, check,
+    AppearanceMapError, AppearanceMapParams, MixtureFusionParams, MixtureReductionParams, OdometryNoise,
+    check,
 };
 
 /// Whether the map changes while the robot drives.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::Learning::default(), wayfix_appearance_cml::Learning::Adapting);
+/// assert_eq!(wayfix_appearance_cml::MapLearning::default(), wayfix_appearance_cml::MapLearning::Adapting);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Learning {
+pub enum MapLearning {
     /// The map stays as it is.
     Static,
     /// The map learns and forgets ([`ForgettingMode`](crate::ForgettingMode)).
@@ -39,14 +40,14 @@ pub enum PoseHypothesisRule {
 /// Whether the localizer tests for a kidnapping.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LocalizerParams, Recovery};
-/// let never_relocalized = LocalizerParams { recovery: Recovery::Off, ..LocalizerParams::default() };
+/// use wayfix_appearance_cml::{LocalizerParams, KidnappingTest};
+/// let never_relocalized = LocalizerParams { kidnapping_test: KidnappingTest::Off, ..LocalizerParams::default() };
 /// assert!(never_relocalized.validate().is_ok());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Recovery {
+pub enum KidnappingTest {
     /// No test.
     Off,
     /// The sequential test of [`RelocalizationTest`](wayfix_integrity::RelocalizationTest).
@@ -57,8 +58,8 @@ pub enum Recovery {
 /// Parameters of the localizer.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LocalizerParams, Recovery};
-/// assert_eq!(LocalizerParams::as_published().recovery, Recovery::Off);
+/// use wayfix_appearance_cml::{LocalizerParams, KidnappingTest};
+/// assert_eq!(LocalizerParams::as_published().kidnapping_test, KidnappingTest::Off);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -73,17 +74,17 @@ pub struct LocalizerParams {
     /// Default [`PoseHypothesisRule::Interpolation`].
     pub pose_hypothesis_rule: PoseHypothesisRule,
     /// How odometry, view and other sources are fused.
-    pub fusion: FusionParams,
+    pub fusion: MixtureFusionParams,
     /// How the mixture is kept small.
-    pub simplify: MixtureReductionParams,
+    pub mixture_reduction: MixtureReductionParams,
     /// Minimum weight of the heaviest component of a unimodal belief. Default 0.8: four to one against all other poses.
-    pub unimodal_weight: f64,
-    /// Default [`Recovery::SequentialTest`].
-    pub recovery: Recovery,
+    pub unimodal_min_weight: f64,
+    /// Default [`KidnappingTest::SequentialTest`].
+    pub kidnapping_test: KidnappingTest,
     /// Rates and distances of the test.
     pub relocalization: RelocalizationParams,
-    /// Default [`Learning::Adapting`].
-    pub learning: Learning,
+    /// Default [`MapLearning::Adapting`].
+    pub map_learning: MapLearning,
     /// How the map learns.
     pub map: AppearanceMapParams,
     /// Whether views that differ from both neighbours along the path are not learned: a person passes by. Default true.
@@ -95,12 +96,12 @@ impl Default for LocalizerParams {
         Self {
             odometry: OdometryNoise::default(),
             pose_hypothesis_rule: PoseHypothesisRule::default(),
-            fusion: FusionParams::default(),
-            simplify: MixtureReductionParams::default(),
-            unimodal_weight: 0.8,
-            recovery: Recovery::default(),
+            fusion: MixtureFusionParams::default(),
+            mixture_reduction: MixtureReductionParams::default(),
+            unimodal_min_weight: 0.8,
+            kidnapping_test: KidnappingTest::default(),
             relocalization: RelocalizationParams::default(),
-            learning: Learning::default(),
+            map_learning: MapLearning::default(),
             map: AppearanceMapParams::default(),
             skip_outlier_views_in_mapping: true,
         }
@@ -113,8 +114,8 @@ impl LocalizerParams {
     pub fn as_published() -> Self {
         Self {
             pose_hypothesis_rule: PoseHypothesisRule::Superposition,
-            fusion: FusionParams::as_published(),
-            recovery: Recovery::Off,
+            fusion: MixtureFusionParams::as_published(),
+            kidnapping_test: KidnappingTest::Off,
             map: AppearanceMapParams::as_published(),
             skip_outlier_views_in_mapping: false,
             ..Self::default()
@@ -128,8 +129,8 @@ impl LocalizerParams {
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
         self.odometry.validate()?;
         self.fusion.validate()?;
-        self.simplify.validate()?;
-        check::share("unimodal_weight", self.unimodal_weight)?;
+        self.mixture_reduction.validate()?;
+        check::share("unimodal_min_weight", self.unimodal_min_weight)?;
         self.relocalization.validate()?;
         self.map.validate()
     }

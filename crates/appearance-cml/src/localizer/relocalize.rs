@@ -3,9 +3,9 @@ use wayfix_gaussian_core::Gaussian;
 use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
 use super::belief::Belief;
-use super::{AppearanceLocalizer, LocalizerParams, Recovery};
+use super::{AppearanceLocalizer, KidnappingTest, LocalizerParams};
 use crate::model::{N_FAR, PlaceTest};
-use crate::{AppearanceMap, AppearanceMapError, Descriptor, ReferenceSearch, separation_squared};
+use crate::{AppearanceMap, AppearanceMapError, ReferenceSearch, ViewDescriptor, separation_squared};
 
 /// Is the robot where the belief puts it? The test between the belief and alternatives from searches of the whole map.
 ///
@@ -80,7 +80,7 @@ fn log_ratio(test: Option<PlaceTest>, rate: f64) -> f64 {
     if is_recognized { (rate / chance).ln() } else { ((1.0 - rate) / (1.0 - chance)).ln() }
 }
 
-impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
+impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
     /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative wins.
     ///
     /// Returns whether it did. `kidnap` is the test of the present hypothesis.
@@ -90,7 +90,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
         kidnap: &mut KidnapTest,
         belief: &mut Belief,
     ) -> Result<bool, AppearanceMapError> {
-        let Some(present) = self.belief.heaviest().filter(|_| self.params.recovery != Recovery::Off) else {
+        let Some(present) =
+            self.belief.heaviest().filter(|_| self.params.kidnapping_test != KidnappingTest::Off)
+        else {
             return Ok(false);
         };
         let (map, params) = (&self.map, &self.params);
@@ -135,7 +137,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, 
 }
 
 /// A hypothesis after the view, which it looks for nearby.
-fn seen<D: Descriptor, S: ReferenceSearch<D>>(
+fn seen<D: ViewDescriptor, S: ReferenceSearch<D>>(
     map: &AppearanceMap<D, S>,
     view: &D,
     belief: &Belief,
@@ -146,7 +148,7 @@ fn seen<D: Descriptor, S: ReferenceSearch<D>>(
 }
 
 /// The places of the whole map that match the view.
-fn search<D: Descriptor, S: ReferenceSearch<D>>(
+fn search<D: ViewDescriptor, S: ReferenceSearch<D>>(
     map: &AppearanceMap<D, S>,
     view: &D,
     params: &LocalizerParams,
@@ -158,7 +160,7 @@ fn search<D: Descriptor, S: ReferenceSearch<D>>(
 
 /// Whether a place is far from the present hypothesis, and no alternative means it yet. Views of places that are not far from one another
 /// are similar, so that both hypotheses would be recognized.
-fn is_new<D: Descriptor, S: ReferenceSearch<D>>(
+fn is_new<D: ViewDescriptor, S: ReferenceSearch<D>>(
     place: &Gaussian<Pose2<f64>>,
     present: &Gaussian<Pose2<f64>>,
     kidnap: &KidnapTest,

@@ -7,15 +7,15 @@ use crate::AppearanceMapError;
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::Start;
+/// use wayfix_appearance_cml::StartPosePrior;
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.02, 0.02, 0.01))?;
-/// assert_ne!(Start::Known(pose), Start::Anywhere);
+/// assert_ne!(StartPosePrior::Known(pose), StartPosePrior::Anywhere);
 /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub enum Start {
+pub enum StartPosePrior {
     /// This pose, in the frame of the map.
     Known(Gaussian<Pose2<f64>>),
     /// One of several poses, as in a saved state.
@@ -24,7 +24,7 @@ pub enum Start {
     Anywhere,
 }
 
-impl Start {
+impl StartPosePrior {
     /// The checked mixture, the heaviest component first; `None` for anywhere.
     pub(super) fn into_state(self) -> Result<Option<GaussianMixture<Pose2<f64>>>, AppearanceMapError> {
         let weighted = match self {

@@ -5,19 +5,21 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
-use super::{AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDistanceScale, similarity};
-use crate::{AppearanceMapError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
+use super::{
+    AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDifferenceModel, similarity,
+};
+use crate::{AppearanceMapError, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch, ViewDescriptor};
 
-/// The appearance map: reference views, and the poses that each was seen from. [Gross et al. 2005, Eqs. 9-10]
+/// The appearance map: reference views, and the poses that each was seen from. [Gross et al. 2005, Eqs. 9–10]
 ///
 /// Plain data: [`search`](Self::search), [`references`](Self::references) and [`scale`](Self::scale) are all there is, and
 /// [`from_parts`](Self::from_parts) takes them back.
 ///
 /// ```
-/// # use wayfix_appearance_cml::{ViewDifference, Descriptor};
+/// # use wayfix_appearance_cml::{ViewDifference, ViewDescriptor};
 /// # #[derive(Clone, Debug)]
 /// # struct Brightness(f64);
-/// # impl Descriptor for Brightness {
+/// # impl ViewDescriptor for Brightness {
 /// #     fn compare(&self, other: &Self) -> ViewDifference {
 /// #         ViewDifference { distance: (self.0 - other.0).abs(), rotation: 0.0 }
 /// #     }
@@ -37,25 +39,25 @@ pub struct AppearanceMap<D, S = LinearSearch<D>> {
     pub(super) search: S,
     references: BTreeMap<ReferenceId, ReferenceView>,
     pub(super) grid: Grid,
-    pub(super) scale: ViewDistanceScale,
+    pub(super) scale: ViewDifferenceModel,
     next: u32,
     descriptor: PhantomData<fn() -> D>,
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D, S> {
+impl<D: ViewDescriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D, S> {
     fn default() -> Self {
         Self {
             search: S::default(),
             references: BTreeMap::new(),
             grid: Grid::default(),
-            scale: ViewDistanceScale::default(),
+            scale: ViewDifferenceModel::default(),
             next: 0,
             descriptor: PhantomData,
         }
     }
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// A map from its parts; `next` is the number of the next reference.
     ///
     /// # Errors
@@ -64,7 +66,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     pub fn from_parts(
         search: S,
         references: BTreeMap<ReferenceId, ReferenceView>,
-        scale: ViewDistanceScale,
+        scale: ViewDifferenceModel,
         next: u32,
     ) -> Result<Self, AppearanceMapError> {
         let mut grid = Grid::default();
@@ -98,11 +100,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.references.get(&id)
     }
     /// How views change with distance.
-    pub fn scale(&self) -> &ViewDistanceScale {
+    pub fn scale(&self) -> &ViewDifferenceModel {
         &self.scale
     }
     /// The same, to add samples to.
-    pub fn scale_mut(&mut self) -> &mut ViewDistanceScale {
+    pub fn scale_mut(&mut self) -> &mut ViewDifferenceModel {
         &mut self.scale
     }
     /// The number of the next reference.
@@ -120,7 +122,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
 
     /// $`E^{max}`$.
     pub fn match_limit(&self, params: &AppearanceMapParams) -> f64 {
-        self.scale.match_limit(params.match_limit_fraction)
+        self.scale.match_limit(params.max_match_difference_share)
     }
 
     /// Maximum distance between the places of two matching views, m.

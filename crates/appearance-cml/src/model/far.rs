@@ -3,7 +3,7 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::interpolate::MAX_TURN;
 use super::{AppearanceMap, AppearanceMapParams, PlaceComponent};
-use crate::{Descriptor, ReferenceId, ReferenceSearch};
+use crate::{ReferenceId, ReferenceSearch, ViewDescriptor};
 
 /// Number of references of the whole map that a view is compared with. With the half dozen references of one place, a view of another place
 /// recognizes it in one case of ten.
@@ -18,7 +18,7 @@ pub(crate) struct PlaceTest {
     pub(crate) chance: f64,
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Differences of the view from `n` references, spread evenly over the map. They are others with each `turn`.
     pub(crate) fn sample(&self, view: &D, turn: u32, n: usize) -> Vec<(ReferenceId, f64)> {
         // The bit-reversed numbers of van der Corput spread any stretch of successive numbers evenly.

@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::{Angle, Pose2, wrap_angle};
 use wayfix_gaussian_core::{CircularMoments, Gaussian, symmetrize};
 
-use super::{PlaceMatch, ViewDistanceScale};
+use super::{PlaceMatch, ViewDifferenceModel};
 use crate::{AppearanceMapError, PoseHypothesis};
 
 /// The observation as one hypothesis for each group of neighbouring places, between which the pose is interpolated.
@@ -13,14 +13,14 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// independent of all beliefs ([`PoseHypothesis::independent`]).
 ///
 /// At the border of the map all places lie on one side, and their mean is biased towards it. There the leader only tells the distance of the
-/// robot ([`ViewDistanceScale::to_meters`]): the hypothesis moves by that distance at most towards a component of `belief` beyond the border.
+/// robot ([`ViewDifferenceModel::to_meters`]): the hypothesis moves by that distance at most towards a component of `belief` beyond the border.
 ///
 /// # Errors
 /// Returns an error if a place is not finite.
 pub fn interpolate(
     place_matches: &[PlaceMatch],
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewDistanceScale,
+    scale: &ViewDifferenceModel,
 ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
     groups(place_matches, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
 }
@@ -40,7 +40,7 @@ pub(super) const MAX_TURN: f64 = 2.0 * (HEADING_SIGMA + PARALLAX_SIGMA);
 type Group<'a> = Vec<&'a PlaceMatch>;
 
 /// Greedy: the most similar remaining place leads a group of its neighbours.
-fn groups<'a>(place_matches: &'a [PlaceMatch], scale: &ViewDistanceScale) -> Vec<Group<'a>> {
+fn groups<'a>(place_matches: &'a [PlaceMatch], scale: &ViewDifferenceModel) -> Vec<Group<'a>> {
     let radius = GROUP_SIZE as f64 * scale.step();
     let mut left: Vec<&PlaceMatch> = place_matches.iter().collect();
     left.sort_by(|a, b| a.matched.comparison.distance.total_cmp(&b.matched.comparison.distance));
@@ -69,7 +69,7 @@ fn nearest_of<'a, 'b>(whole: &'b Group<'a>) -> &'b [&'a PlaceMatch] {
 fn pose_of(
     whole: &Group<'_>,
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewDistanceScale,
+    scale: &ViewDifferenceModel,
 ) -> Result<PoseHypothesis, AppearanceMapError> {
     let group = nearest_of(whole);
     let nearest = group[0].matched.comparison.distance;
@@ -110,7 +110,7 @@ fn pose_of(
 fn turn_of(
     group: &[&PlaceMatch],
     shares: &[f64],
-    scale: &ViewDistanceScale,
+    scale: &ViewDifferenceModel,
 ) -> Result<(f64, f64), AppearanceMapError> {
     let headings: Vec<Angle<f64>> = group.iter().map(|s| s.gaussian.mean().rotation).collect();
     let moments = CircularMoments::from_weighted(&headings, shares)?;
@@ -126,7 +126,7 @@ fn beyond_border(
     whole: &Group<'_>,
     interpolated: &Vector2<f64>,
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewDistanceScale,
+    scale: &ViewDifferenceModel,
 ) -> Option<Vector2<f64>> {
     let leader = whole[0].gaussian.mean().translation;
     let offset = |component: &Gaussian<Pose2<f64>>| component.mean().translation - leader;

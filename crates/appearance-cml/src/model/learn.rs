@@ -12,7 +12,7 @@ use super::{
     interpolate,
 };
 use crate::{
-    AppearanceMapError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared,
+    AppearanceMapError, ReferenceId, ReferenceMatch, ReferenceSearch, ViewDescriptor, separation_squared,
     similarity,
 };
 
@@ -31,11 +31,11 @@ pub struct MapUpdate {
     pub matched: usize,
 }
 
-impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
-    /// Learns that the view was seen from this pose. [Gross et al. 2005, Sec. 2.3]
+impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+    /// Learns that the view was seen from this pose. [Gross et al. 2005, Sec. 2.3, Fig. 3]
     ///
     /// The three steps of the paper: insertion of a new reference if none matches; update of the places of matching references;
-    /// adaptation of the weights. `gate` is [`FusionParams::gate`](crate::FusionParams::gate).
+    /// adaptation of the weights. `gate` is [`MixtureFusionParams::gate`](crate::MixtureFusionParams::gate).
     ///
     /// # Errors
     /// Returns [`AppearanceMapError::Gaussian`] if the pose is invalid, and [`AppearanceMapError::ReferenceIdsExhausted`] if no number is left;
@@ -80,7 +80,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         !seen.iter().any(|m| m.comparison.distance < insertion)
     }
 
-    /// Step 2: adds a Gaussian to each matching reference. [Gross et al. 2005, Eqs. 11-14]
+    /// Step 2: adds a Gaussian to each matching reference. [Gross et al. 2005, Eqs. 11–14]
     fn with_places_updated(
         &self,
         seen: &[ReferenceMatch],
@@ -142,7 +142,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(nearest)
     }
 
-    /// Step 3, matching references. [Gross et al. 2005, Eqs. 15-17]
+    /// Step 3, matching references. [Gross et al. 2005, Eqs. 15–17]
     fn weigh_seen(
         &self,
         changed: &mut BTreeMap<ReferenceId, ReferenceView>,
@@ -159,7 +159,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(())
     }
 
-    /// Step 3, references of this place that do not match. [Gross et al. 2005, Eqs. 18-19]
+    /// Step 3, references of this place that do not match. [Gross et al. 2005, Eqs. 18–19]
     fn weigh_missed(
         &self,
         changed: &mut BTreeMap<ReferenceId, ReferenceView>,

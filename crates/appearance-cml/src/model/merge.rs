@@ -25,7 +25,7 @@ pub(super) fn merge_places(
     Ok(())
 }
 
-/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13-14]
+/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13–14]
 pub(super) fn merged(
     a: &PlaceComponent,
     b: &PlaceComponent,
@@ -35,7 +35,7 @@ pub(super) fn merged(
         .map_err(GaussianError::from)?;
     Ok(PlaceComponent {
         weight: (a.weight + b.weight).min(1.0),
-        count: (a.count + b.count).min(params.max_observation_count),
+        count: (a.count + b.count).min(params.max_effective_observation_count),
         gaussian,
     })
 }

@@ -17,7 +17,7 @@ pub use appearance_map::AppearanceMap;
 pub use comparing::place_match::PlaceMatch;
 pub(crate) use comparing::scale_learner::ScaleLearner;
 pub use comparing::similarity::similarity;
-pub use comparing::view_scale::{ViewDifferenceSample, ViewDistanceScale};
+pub use comparing::view_scale::{ViewDifferenceModel, ViewDifferenceSample};
 pub(crate) use far::{N_FAR, PlaceTest};
 pub use interpolate::interpolate;
 pub(crate) use interpolate::{GROUP_SIZE, HEADING_SIGMA};

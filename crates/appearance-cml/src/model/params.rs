@@ -11,7 +11,7 @@ use crate::{AppearanceMapError, check};
 pub enum ForgettingMode {
     /// References that match at another place lose weight. [Gross et al. 2005, Eq. 17]
     Passive,
-    /// References of this place that do not match lose weight too. [Gross et al. 2005, Eqs. 18-19]
+    /// References of this place that do not match lose weight too. [Gross et al. 2005, Eqs. 18–19]
     #[default]
     Active,
 }
@@ -69,7 +69,7 @@ pub enum ForgettingUncertainty {
 pub struct AppearanceMapParams {
     /// $`E^{max}`$ as a share of the squared difference of far places, between noise (0) and those (1). Default 0.4: a matching view
     /// is nearer to noise than to a far place.
-    pub match_limit_fraction: f64,
+    pub max_match_difference_share: f64,
     /// $`β`$: learning rate of the weights (Eqs. 16-17). Default 0.3: a place that was seen twice has half of the full weight.
     pub weight_learning_rate: f64,
     /// Default [`PlaceUpdateRule::Residual`].
@@ -84,7 +84,7 @@ pub struct AppearanceMapParams {
     pub min_weight: f64,
     /// Count from which on a place does not become more rigid (Eq. 13). Default 20: the mean of 20 views has a quarter of
     /// the error of one.
-    pub max_observation_count: f64,
+    pub max_effective_observation_count: f64,
     /// Maximum number of references; the least important one is removed first. Default 1 000 000: one gigabyte.
     pub max_references: usize,
 }
@@ -92,14 +92,14 @@ pub struct AppearanceMapParams {
 impl Default for AppearanceMapParams {
     fn default() -> Self {
         Self {
-            match_limit_fraction: 0.4,
+            max_match_difference_share: 0.4,
             weight_learning_rate: 0.3,
             place_update: PlaceUpdateRule::default(),
             forgetting_mode: ForgettingMode::default(),
             forgetting_rate: 0.6,
             forgetting_uncertainty: ForgettingUncertainty::default(),
             min_weight: 0.05,
-            max_observation_count: 20.0,
+            max_effective_observation_count: 20.0,
             max_references: 1_000_000,
         }
     }
@@ -110,7 +110,7 @@ impl AppearanceMapParams {
     pub fn as_published() -> Self {
         Self {
             place_update: PlaceUpdateRule::Pose,
-            max_observation_count: f64::MAX,
+            max_effective_observation_count: f64::MAX,
             forgetting_uncertainty: ForgettingUncertainty::Pose,
             ..Self::default()
         }
@@ -121,11 +121,11 @@ impl AppearanceMapParams {
     /// # Errors
     /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), AppearanceMapError> {
-        check::share("share of the match limit", self.match_limit_fraction)?;
+        check::share("share of the match limit", self.max_match_difference_share)?;
         check::share("learning rate", self.weight_learning_rate)?;
         check::share("rate of forgetting", self.forgetting_rate)?;
         check::share("min_weight of a place", self.min_weight)?;
-        check::positive("max_observation_count of a place", self.max_observation_count)?;
+        check::positive("max_effective_observation_count of a place", self.max_effective_observation_count)?;
         check::count("max_references", self.max_references)
     }
 }

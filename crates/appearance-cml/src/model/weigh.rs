@@ -3,18 +3,20 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::comparing::place_match::turned;
-use super::{AppearanceMapParams, ForgettingUncertainty, PlaceComponent, PlaceUpdateRule, ViewDistanceScale};
+use super::{
+    AppearanceMapParams, ForgettingUncertainty, PlaceComponent, PlaceUpdateRule, ViewDifferenceModel,
+};
 use crate::{AppearanceMapError, ReferenceMatch, separation_squared, similarity};
 
 /// The weight of a place whose reference matches: it grows if the robot is there and falls if the robot is elsewhere.
 ///
-/// $`w ← β S + (1 - β S) w`$ or $`w ← (1 - β S) w`$. [Gross et al. 2005, Eqs. 15-17]
+/// $`w ← β S + (1 - β S) w`$ or $`w ← (1 - β S) w`$. [Gross et al. 2005, Eqs. 15–17]
 pub(super) fn weight_when_seen(
     place: &PlaceComponent,
     matched: &ReferenceMatch,
     pose: &Gaussian<Pose2<f64>>,
     (limit, gate): (f64, f64),
-    (scale, params): (&ViewDistanceScale, &AppearanceMapParams),
+    (scale, params): (&ViewDifferenceModel, &AppearanceMapParams),
 ) -> Result<f64, AppearanceMapError> {
     let gain = params.weight_learning_rate * similarity(matched.comparison.distance, limit);
     let seen_from = turned(&place.gaussian, matched.comparison.rotation);
@@ -27,7 +29,7 @@ pub(super) fn weight_when_seen(
     Ok((1.0 - gain) * place.weight + if agrees { gain } else { 0.0 })
 }
 
-/// The weight of a place of the robot whose reference does not match. [Gross et al. 2005, Eqs. 18-19]
+/// The weight of a place of the robot whose reference does not match. [Gross et al. 2005, Eqs. 18–19]
 ///
 /// $`w ← (1 - b) w`$, $`b = β_{for} \max(1 - d/d^{for}, 0)\, d^{gain}/σ`$, clamped to [0, 1], with the distance $`d`$ in the plane and the
 /// [uncertainty](ForgettingUncertainty) $`σ`$. $`d^{for}`$ is the match radius, beyond which no match is expected; $`d^{gain}`$ is two steps: a pose
@@ -36,7 +38,7 @@ pub(super) fn weight_when_missed(
     place: &PlaceComponent,
     pose: &Gaussian<Pose2<f64>>,
     radius: f64,
-    (scale, params): (&ViewDistanceScale, &AppearanceMapParams),
+    (scale, params): (&ViewDifferenceModel, &AppearanceMapParams),
 ) -> f64 {
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);

@@ -6,7 +6,7 @@ use super::LowerBoundedDistance;
 ///
 /// **Law**: for every `enough`, what is passed over is farther: where [`may_be_within`](Self::may_be_within) says `None`, the distance is above `enough`; and its
 /// number never exceeds the distance.
-pub trait BoundTable<D: LowerBoundedDistance>: Clone + Debug + Default {
+pub trait LowerBoundTable<D: LowerBoundedDistance>: Clone + Debug + Default {
     /// Puts a reference into a slot, in the stead of what was there; a new slot is the next one.
     fn put(&mut self, slot: usize, reference: &D);
 
@@ -16,9 +16,9 @@ pub trait BoundTable<D: LowerBoundedDistance>: Clone + Debug + Default {
 
 /// Bounds nothing: for descriptors that are as cheap to compare as to look at.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct NoBoundTable;
+pub struct NoLowerBoundTable;
 
-impl<D: LowerBoundedDistance> BoundTable<D> for NoBoundTable {
+impl<D: LowerBoundedDistance> LowerBoundTable<D> for NoLowerBoundTable {
     fn put(&mut self, _: usize, _: &D) {}
 
     fn may_be_within(&self, _: usize, _: &D::Probe, _: f64) -> Option<f64> {

@@ -1,27 +1,23 @@
-use super::{BoundTable, Descriptor, ViewDifference};
+use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 
 /// A descriptor whose distance can be bounded from below for less than it costs: what an exact index needs.
 ///
-/// **Laws**, for a view `v` and a reference `r`, up to rounding: their invariants are as many and
-/// $`\lVert \mathrm{inv}(v) - \mathrm{inv}(r) \rVert`$ ≤ `r.bound(&v.probe(), enough)` ≤ `v.compare(&r).distance`, the first only where `enough` is infinite;
+/// **Laws**, for a view `v` and a reference `r`, up to rounding: `r.bound(&v.probe(), enough)` ≤ `v.compare(&r).distance`;
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, Descriptor, NoBoundTable};
+/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, ViewDescriptor, NoLowerBoundTable};
 /// /// A colour that looks the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
-/// impl Descriptor for Grey {
+/// impl ViewDescriptor for Grey {
 ///     fn compare(&self, reference: &Self) -> ViewDifference {
 ///         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
 ///     }
 /// }
 /// impl LowerBoundedDistance for Grey {
 ///     type Probe = Grey;
-///     type Table = NoBoundTable;
-///     fn invariants(&self) -> Vec<f64> {
-///         vec![self.0]
-///     }
+///     type Table = NoLowerBoundTable;
 ///     fn probe(&self) -> Grey {
 ///         self.clone()
 ///     }
@@ -37,14 +33,11 @@ use super::{BoundTable, Descriptor, ViewDifference};
 /// }
 /// assert_eq!(Grey(3.0).bound(&Grey(5.0), 1.0), 2.0);
 /// ```
-pub trait LowerBoundedDistance: Descriptor + Sized {
+pub trait LowerBoundedDistance: ViewDescriptor + Sized {
     /// A view made ready to be compared with many references.
     type Probe;
     /// The first numbers of many references, side by side.
-    type Table: BoundTable<Self>;
-
-    /// Numbers that do not depend on the heading.
-    fn invariants(&self) -> Vec<f64>;
+    type Table: LowerBoundTable<Self>;
 
     /// This view, made ready.
     fn probe(&self) -> Self::Probe;

@@ -11,7 +11,7 @@ pub struct ViewDifference {
 ///
 /// **Laws**: `a.compare(&a).distance` is 0; the distance is symmetric and does not change when either view is taken with another heading;
 /// `a.compare(&b).rotation` is the opposite of `b.compare(&a).rotation`.
-pub trait Descriptor {
+pub trait ViewDescriptor {
     /// Compares a view with a reference.
     fn compare(&self, reference: &Self) -> ViewDifference;
 }

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use super::{Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, nearest::by_distance};
+use super::{ReferenceId, ReferenceMatch, ReferenceSearch, ViewDescriptor, nearest::by_distance};
 use crate::AppearanceMapError;
 
 /// Compares with every reference: the plain search that faster ones must agree with.
@@ -15,7 +15,7 @@ impl<D> Default for LinearSearch<D> {
     }
 }
 
-impl<D: Descriptor> LinearSearch<D> {
+impl<D: ViewDescriptor> LinearSearch<D> {
     fn sorted(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch> {
         let compare = |(id, reference): (&ReferenceId, &D)| ReferenceMatch {
             id: *id,
@@ -28,7 +28,7 @@ impl<D: Descriptor> LinearSearch<D> {
     }
 }
 
-impl<D: Descriptor> ReferenceSearch<D> for LinearSearch<D> {
+impl<D: ViewDescriptor> ReferenceSearch<D> for LinearSearch<D> {
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceMapError> {
         if self.references.contains_key(&id) {
             return Err(AppearanceMapError::DuplicateReference { id: id.0 });

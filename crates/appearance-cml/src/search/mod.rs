@@ -2,18 +2,15 @@
 
 mod bound_table;
 mod bounded;
-mod box_tree;
 mod descriptor;
 mod index;
 mod linear;
 mod nearest;
-mod projection;
 mod reference_search;
-mod slot_set;
 
-pub use bound_table::{BoundTable, NoBoundTable};
+pub use bound_table::{LowerBoundTable, NoLowerBoundTable};
 pub use bounded::LowerBoundedDistance;
-pub use descriptor::{Descriptor, ViewDifference};
+pub use descriptor::{ViewDescriptor, ViewDifference};
 pub use index::{AppearanceIndex, SearchStatistics};
 pub use linear::LinearSearch;
 pub use reference_search::{ReferenceId, ReferenceMatch, ReferenceSearch};

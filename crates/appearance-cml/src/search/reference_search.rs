@@ -1,4 +1,4 @@
-use super::{Descriptor, ViewDifference};
+use super::{ViewDescriptor, ViewDifference};
 use crate::AppearanceMapError;
 
 /// Names a reference view for as long as the map lives.
@@ -17,7 +17,7 @@ pub struct ReferenceMatch {
 /// Holds the descriptors of all reference views and finds those that are near a view.
 ///
 /// **Law**: whatever the order of insertions and removals, the answers are those of [`LinearSearch`](super::LinearSearch).
-pub trait ReferenceSearch<D: Descriptor> {
+pub trait ReferenceSearch<D: ViewDescriptor> {
     /// Takes a reference in.
     ///
     /// # Errors

@@ -3,7 +3,7 @@ use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use crate::AppearanceMapError;
 
-/// One weighted Gaussian of a mixture over poses. The weights are normalized after the last source is fused. [Gross et al. 2005, Sec. 2.1]
+/// One weighted Gaussian of a mixture over poses. The weights are normalized after the last source is fused. [Gross et al. 2005, Sec. 2.1, Eq. 1]
 ///
 /// ```
 /// use nalgebra::Vector3;

@@ -1,6 +1,6 @@
 use super::lanes::HARMONICS;
 use super::probe::{N_LOW_HARMONICS, compare_once};
-use crate::{AppearanceMapError, Descriptor, ViewDifference};
+use crate::{AppearanceMapError, ViewDescriptor, ViewDifference};
 
 /// Harmonics beside the constant one, in groups.
 pub(super) const MOST_GROUPS: usize = 8;
@@ -154,7 +154,7 @@ impl PanoramaDescriptor {
     }
 }
 
-impl Descriptor for PanoramaDescriptor {
+impl ViewDescriptor for PanoramaDescriptor {
     fn compare(&self, reference: &Self) -> ViewDifference {
         compare_once(self, reference)
     }

@@ -1,18 +1,20 @@
 use super::{
-    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaParams, cosines::Cosines, sectors::cell_means,
+    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaDescriptorParams, cosines::Cosines,
+    sectors::cell_means,
 };
 use crate::{AppearanceMapError, check};
 
 /// Turns the panoramas of one camera into descriptors.
 ///
 /// Averages per ring and sector are normalized and expanded over the azimuth,
-/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al., Section 2.2], and then over the rings,
+/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al. 2005, Sec. 2.2], and then over
+/// the rings,
 /// in cosines. There a Gaussian of standard deviation $`σ`$ cells smooths by $`e^{-σ² ((2πk/n)² + (πl/n_r)²) / 2}`$ for harmonic $`k`$ of $`n`$ sectors and
 /// cosine $`l`$ of $`n_r`$ rings.
 ///
 /// ```
-/// use wayfix_appearance_cml::{Descriptor, Panorama, PanoramaFeatures, PanoramaParams};
-/// let features = PanoramaFeatures::new(PanoramaParams::default(), 120, 25)?;
+/// use wayfix_appearance_cml::{ViewDescriptor, Panorama, PanoramaDescriptorExtractor, PanoramaDescriptorParams};
+/// let features = PanoramaDescriptorExtractor::new(PanoramaDescriptorParams::default(), 120, 25)?;
 /// let bytes = (0..120 * 25).flat_map(|i| [(i % 120 * (i / 120 + 3) % 251) as u8; 3]).collect();
 /// let panorama = Panorama::from_rgb(120, 25, bytes)?;
 /// let (before, after) = (features.describe(&panorama)?, features.describe(&panorama.turned(10))?);
@@ -22,8 +24,8 @@ use crate::{AppearanceMapError, check};
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct PanoramaFeatures {
-    params: PanoramaParams,
+pub struct PanoramaDescriptorExtractor {
+    params: PanoramaDescriptorParams,
     size: (usize, usize),
     n_rings: usize,
     n_sectors: usize,
@@ -33,12 +35,16 @@ pub struct PanoramaFeatures {
     kept: [Vec<f64>; 2],
 }
 
-impl PanoramaFeatures {
+impl PanoramaDescriptorExtractor {
     /// For panoramas of `n_columns` × `n_rows` pixels.
     ///
     /// # Errors
     /// [`AppearanceMapError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
-    pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceMapError> {
+    pub fn new(
+        params: PanoramaDescriptorParams,
+        n_columns: usize,
+        n_rows: usize,
+    ) -> Result<Self, AppearanceMapError> {
         params.validate()?;
         check::count("rows of the panorama", n_rows)?;
         let (n_rings, n_sectors) = (params.n_rings.min(n_rows), params.n_sectors.min(n_columns));
@@ -56,7 +62,7 @@ impl PanoramaFeatures {
     }
 
     /// The parameters.
-    pub fn params(&self) -> &PanoramaParams {
+    pub fn params(&self) -> &PanoramaDescriptorParams {
         &self.params
     }
 

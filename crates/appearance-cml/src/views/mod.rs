@@ -1,5 +1,5 @@
 //! What a view looks like, whichever way the robot faces: panoramas become averages per ring and sector, these a Fourier spectrum over the
-//! azimuth. [Gross et al., Section 2.2]
+//! azimuth. [Gross et al. 2005, Sec. 2.2]
 //!
 //! A turn of the robot shifts a panorama and multiplies harmonic $`k`$ of every ring by the same $`e^{-\mathrm i k φ}`$: magnitudes, and phases
 //! between rings, do not depend on it, and the best rotation is the maximum of the cross-correlation.
@@ -8,9 +8,9 @@ mod correlation;
 mod cosines;
 mod descriptor;
 mod features;
-mod invariants;
 mod lanes;
 mod low_harmonics;
+mod lower_bound;
 mod normalization;
 mod omnidirectional_ring;
 mod panorama;
@@ -20,10 +20,10 @@ mod sectors;
 mod table;
 
 pub use descriptor::PanoramaDescriptor;
-pub use features::PanoramaFeatures;
+pub use features::PanoramaDescriptorExtractor;
 pub use normalization::{BrightnessNormalization, IntensityScale};
-pub use omnidirectional_ring::{OmnidirectionalRing, RingOrientation};
+pub use omnidirectional_ring::{OmnidirectionalRing, RingVerticalOrientation};
 pub use panorama::{AzimuthDirection, Panorama};
-pub use params::PanoramaParams;
+pub use params::PanoramaDescriptorParams;
 pub use probe::PanoramaQuery;
-pub use table::PanoramaBoundTable;
+pub use table::PanoramaLowerBoundTable;

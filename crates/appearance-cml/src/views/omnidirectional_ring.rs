@@ -7,7 +7,7 @@ use crate::AppearanceMapError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum RingOrientation {
+pub enum RingVerticalOrientation {
     /// The outermost: a camera that looks up into a mirror.
     OutermostUp,
     /// The innermost: a camera, or a fisheye lens, that looks up.
@@ -20,8 +20,8 @@ pub enum RingOrientation {
 /// they are seen in the image (a mirror may reverse that in the world).
 ///
 /// ```
-/// use wayfix_appearance_cml::{OmnidirectionalRing, Panorama, RingOrientation, AzimuthDirection};
-/// let donut = OmnidirectionalRing { center: [4.5, 4.5], radii: [1.0, 4.0], azimuth_direction: AzimuthDirection::Clockwise, ring_orientation: RingOrientation::OutermostUp };
+/// use wayfix_appearance_cml::{OmnidirectionalRing, Panorama, RingVerticalOrientation, AzimuthDirection};
+/// let donut = OmnidirectionalRing { center: [4.5, 4.5], radii: [1.0, 4.0], azimuth_direction: AzimuthDirection::Clockwise, ring_orientation: RingVerticalOrientation::OutermostUp };
 /// let image = Panorama::from_rgb(10, 10, vec![7; 300])?; // any picture: a buffer of pixels
 /// let panorama = donut.unwrap_image(10, 10, image.pixels(), 16, 3)?;
 /// assert_eq!((panorama.n_columns(), panorama.n_rows()), (16, 3));
@@ -39,7 +39,7 @@ pub struct OmnidirectionalRing {
     /// Which way the columns follow each other, as seen in the image.
     pub azimuth_direction: AzimuthDirection,
     /// Which ring becomes the top row.
-    pub ring_orientation: RingOrientation,
+    pub ring_orientation: RingVerticalOrientation,
 }
 
 impl OmnidirectionalRing {
@@ -101,8 +101,8 @@ impl OmnidirectionalRing {
         let [x, y] = [place[0] - self.center[0], place[1] - self.center[1]];
         let radius = x.hypot(y);
         let above = match self.ring_orientation {
-            RingOrientation::OutermostUp => outer - radius,
-            RingOrientation::InnermostUp => radius - inner,
+            RingVerticalOrientation::OutermostUp => outer - radius,
+            RingVerticalOrientation::InnermostUp => radius - inner,
         };
         let row = above / (outer - inner) * n_rows as f64;
         if !(0.0..n_rows as f64).contains(&row) {
@@ -119,8 +119,8 @@ impl OmnidirectionalRing {
         let [inner, outer] = self.radii;
         let depth = ((cell / n_columns) as f64 + 0.5) / n_rows as f64;
         let radius = match self.ring_orientation {
-            RingOrientation::OutermostUp => outer + (inner - outer) * depth,
-            RingOrientation::InnermostUp => inner + (outer - inner) * depth,
+            RingVerticalOrientation::OutermostUp => outer + (inner - outer) * depth,
+            RingVerticalOrientation::InnermostUp => inner + (outer - inner) * depth,
         };
         let (sin, cos) = (self.sign() * (cell % n_columns) as f64 / n_columns as f64 * TAU).sin_cos();
         let pixel = |center: f64, offset: f64, extent: usize| {
@@ -171,7 +171,7 @@ mod tests {
         (0..SIZE * SIZE).map(pixel).collect()
     }
 
-    fn donut(sense: AzimuthDirection, up: RingOrientation) -> OmnidirectionalRing {
+    fn donut(sense: AzimuthDirection, up: RingVerticalOrientation) -> OmnidirectionalRing {
         OmnidirectionalRing {
             center: [50.0, 50.0],
             radii: [10.0, 50.0],
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn columns_follow_the_azimuth_and_rows_the_radius() {
-        let clockwise = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp);
+        let clockwise = donut(AzimuthDirection::Clockwise, RingVerticalOrientation::OutermostUp);
         let panorama = clockwise.unwrap_image(SIZE, SIZE, &image(), 8, 2).unwrap();
         let row = |row| panorama.row(row).copied().collect::<Vec<_>>();
         for column in 1..8 {
@@ -191,7 +191,7 @@ mod tests {
         }
         assert!(row(0).iter().all(|pixel| pixel[0] > 250) && row(1).iter().all(|pixel| pixel[0] < 5));
 
-        let reversed = donut(AzimuthDirection::Counterclockwise, RingOrientation::InnermostUp);
+        let reversed = donut(AzimuthDirection::Counterclockwise, RingVerticalOrientation::InnermostUp);
         let reversed = reversed.unwrap_image(SIZE, SIZE, &image(), 8, 2).unwrap();
         assert!(reversed.row(0).all(|pixel| pixel[0] < 5));
         let (there, back) = (row(0)[2], reversed.row(1).nth(6).copied().unwrap());
@@ -207,7 +207,7 @@ mod tests {
         let donut = OmnidirectionalRing {
             center: [500.0; 2],
             radii: [100.0, 490.0],
-            ..donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp)
+            ..donut(AzimuthDirection::Clockwise, RingVerticalOrientation::OutermostUp)
         };
         let panorama = donut.unwrap_image(size, size, &checkered, 36, 10).unwrap();
         // at least 700 pixels a cell; those of either colour differ by no more than lie at its border of some 120 pixels
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn cells_smaller_than_a_pixel_show_the_pixel_there() {
-        let fine = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp)
+        let fine = donut(AzimuthDirection::Clockwise, RingVerticalOrientation::OutermostUp)
             .unwrap_image(SIZE, SIZE, &image(), 720, 80)
             .unwrap();
         for column in [90, 180, 450] {
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn rings_that_are_none_or_reach_beyond_the_image_are_refused() {
-        let good = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp);
+        let good = donut(AzimuthDirection::Clockwise, RingVerticalOrientation::OutermostUp);
         for bad in [
             OmnidirectionalRing { radii: [10.0, 51.0], ..good },
             OmnidirectionalRing { radii: [10.0, 10.0], ..good },

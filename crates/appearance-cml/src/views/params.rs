@@ -9,7 +9,7 @@ use crate::{AppearanceMapError, check};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct PanoramaParams {
+pub struct PanoramaDescriptorParams {
     /// Rings that the rows are averaged into; where there are fewer rows, every row is a ring. Default 25, from 1 to 64.
     pub n_rings: usize,
     /// Sectors that the columns are averaged into; where there are fewer columns, every column is a sector. Default 120, from 4 to 1024.
@@ -31,7 +31,7 @@ pub struct PanoramaParams {
     pub azimuth_direction: AzimuthDirection,
 }
 
-impl Default for PanoramaParams {
+impl Default for PanoramaDescriptorParams {
     fn default() -> Self {
         Self {
             n_rings: 25,
@@ -47,7 +47,7 @@ impl Default for PanoramaParams {
     }
 }
 
-impl PanoramaParams {
+impl PanoramaDescriptorParams {
     /// # Errors
     /// [`AppearanceMapError::Parameter`] for the first value outside its range.
     pub(super) fn validate(&self) -> Result<(), AppearanceMapError> {

@@ -1,14 +1,14 @@
 use super::low_harmonics::LowHarmonics;
 use super::{PanoramaDescriptor, PanoramaQuery};
-use crate::BoundTable;
+use crate::LowerBoundTable;
 
 /// The slow changes of many panoramas from top to bottom, side by side: 156 bytes each.
 #[derive(Clone, Debug, Default)]
-pub struct PanoramaBoundTable {
+pub struct PanoramaLowerBoundTable {
     rows: Vec<LowHarmonics>,
 }
 
-impl BoundTable<PanoramaDescriptor> for PanoramaBoundTable {
+impl LowerBoundTable<PanoramaDescriptor> for PanoramaLowerBoundTable {
     fn put(&mut self, slot: usize, reference: &PanoramaDescriptor) {
         let row = LowHarmonics::new(reference);
         match self.rows.get_mut(slot) {

@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
-use wayfix_appearance_cml::{Descriptor, ViewDifference};
+use wayfix_appearance_cml::{ViewDescriptor, ViewDifference};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 use wayfix_gaussian_core::Gaussian;
 
@@ -17,7 +17,7 @@ pub struct FieldView {
     heading: f64,
 }
 
-impl Descriptor for FieldView {
+impl ViewDescriptor for FieldView {
     fn compare(&self, reference: &Self) -> ViewDifference {
         let squared: f64 = self.features.iter().zip(&reference.features).map(|(a, b)| (a - b).powi(2)).sum();
         ViewDifference {

@@ -4,7 +4,7 @@ use wayfix_color_map::ColorId;
 use super::NO_COLOR;
 use crate::{BackgroundColorModel, ColorDensity, ColorModelError, PixelSumDensity, YuvImage};
 
-/// The most probable map colour of a pixel, $`\arg\max_m p(c | m)`$ under Eq. 9 of [Schulz & Fox 2004], all colours being equally frequent.
+/// The most probable map colour of a pixel, $`\arg\max_m p(c | m)`$ under [Schulz & Fox 2004, Eq. 9], all colours being equally frequent.
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector3};

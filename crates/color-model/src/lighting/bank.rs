@@ -14,14 +14,14 @@ use crate::ColorModelError;
 /// histories. Clones share their filters until one of them learns.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
-/// use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingFilterParams};
+/// use wayfix_color_model::{ColorMeans, LightingFilterBank, LightingFilter, LightingFilterParams};
 /// use wayfix_gaussian_core::Gaussian;
 /// use wayfix_kalman::MarkovChain;
 /// let light = |y: f64| {
 ///     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
 ///     LightingFilter::new(prior, LightingFilterParams::default())
 /// };
-/// let mut bank = LightingBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
+/// let mut bank = LightingFilterBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
 /// bank.predict(0.04)?;
 /// let seen = ColorMeans::new([(Some(Vector3::new(150.0, 128.0, 128.0)), 500)]);
 /// bank.update_member(1, &seen)?;
@@ -30,7 +30,7 @@ use crate::ColorModelError;
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct LightingBank {
+pub struct LightingFilterBank {
     chain: Arc<MarkovChain>,
     settled: Vec<Arc<LightingFilter>>,
     predicted: Vec<Arc<LightingFilter>>,
@@ -46,7 +46,7 @@ pub struct SelectedLightingFilter {
     pub log_likelihood: f64,
 }
 
-impl LightingBank {
+impl LightingFilterBank {
     /// A bank of filters for the same colours.
     ///
     /// # Errors

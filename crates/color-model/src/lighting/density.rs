@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// Distribution of the pixels of one map colour in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eq. 9]
+/// Distribution of the pixels of one map colour in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eqs. 7–9]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorDensity {
     /// Mean (Y, U, V).

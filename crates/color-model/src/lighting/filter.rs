@@ -3,13 +3,14 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, Vector3};
 use wayfix_color_map::ColorId;
 use wayfix_gaussian_core::{Gaussian, check_covariance};
+use wayfix_kalman::update_component;
 
-use super::{ColorDensity, ColorMeans, LightingFilterParams, UnseenColorRule, update::observe};
+use super::{ColorDensity, ColorMeans, LightingFilterParams, UnseenColorRule};
 use crate::ColorModelError;
 
 /// A Kalman filter over the means of all map colours, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV, for one kind of light.
 ///
-/// Colours are correlated, so colours not seen yet are estimated from those that were. [Schulz & Fox 2004, Eqs. 2-6]
+/// Colours are correlated, so colours not seen yet are estimated from those that were. [Schulz & Fox 2004, Eqs. 2–6]
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_map::ColorId;
@@ -110,7 +111,8 @@ impl LightingFilter {
         &self.covariance
     }
 
-    /// Distribution of the pixels of a colour (Eq. 9). For a colour that does not exist all numbers are NaN, which every function of
+    /// Distribution of the pixels of a colour. [Schulz & Fox 2004, Eq. 9] For a colour that does not exist all numbers are NaN, which every
+    /// function of
     /// densities rejects.
     pub fn color(&self, color: ColorId) -> ColorDensity {
         self.colors().nth(color.index()).unwrap_or_else(ColorDensity::unknown)
@@ -121,7 +123,7 @@ impl LightingFilter {
         ColorDensity::all(&self.mean, &self.covariance, self.params.pixel_color_variance)
     }
 
-    /// Lets the light drift for `seconds` (Eq. 6).
+    /// Lets the light drift for `seconds`. [Schulz & Fox 2004, Eq. 6]
     ///
     /// # Errors
     /// Returns an error if the time is negative or not finite; the state is then unchanged.
@@ -133,30 +135,36 @@ impl LightingFilter {
         Ok(())
     }
 
-    /// Updates the filter with the colour means of one image (Eqs. 3-5). Returns the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
+    /// Updates the filter with the colour means of one image. [Schulz & Fox 2004, Eqs. 3–5] Returns the log evidence
+    /// $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
     /// # Errors
     /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; the state is then unchanged.
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
         means.check(self.n_colors())?;
-        let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();
+        let log_evidences = means.seen().map(|(color, mean)| self.observe(color, &mean));
+        let log_evidence = log_evidences.sum::<Result<f64, _>>()?;
         if self.params.unseen_colors == UnseenColorRule::Regress {
-            self.observe_regressed(means);
+            self.observe_regressed(means)?;
         }
         Ok(log_evidence)
     }
 
-    fn observe(&mut self, color: ColorId, mean: &Vector3<f64>) -> f64 {
+    /// The noise of a mean is diagonal, so a colour takes three updates of a component.
+    fn observe(&mut self, color: ColorId, mean: &Vector3<f64>) -> Result<f64, ColorModelError> {
         let (at, noise) = (3 * color.index(), self.params.mean_color_variance);
-        (0..3).map(|i| observe(&mut self.mean, &mut self.covariance, at + i, mean[i], noise[i])).sum()
+        let mut update =
+            |i| update_component(&mut self.mean, &mut self.covariance, at + i, mean[i], noise[i]);
+        Ok(update(0)? + update(1)? + update(2)?)
     }
 
     /// Fills in unseen colours with their conditional means given the seen ones, so their means do not change.
-    fn observe_regressed(&mut self, means: &ColorMeans) {
+    fn observe_regressed(&mut self, means: &ColorMeans) -> Result<(), ColorModelError> {
         let all = (0..=u8::MAX).map(ColorId).take(self.n_colors());
         for color in all.filter(|color| means.mean(*color).is_none()) {
             let most_likely = self.mean.fixed_rows::<3>(3 * color.index()).into_owned();
-            self.observe(color, &most_likely);
+            self.observe(color, &most_likely)?;
         }
+        Ok(())
     }
 }
 

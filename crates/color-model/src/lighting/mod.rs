@@ -7,9 +7,8 @@ mod filter;
 mod means;
 mod params;
 mod tracker;
-mod update;
 
-pub use bank::{LightingBank, SelectedLightingFilter};
+pub use bank::{LightingFilterBank, SelectedLightingFilter};
 pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;

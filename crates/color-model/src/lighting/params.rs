@@ -11,6 +11,7 @@ use crate::ColorModelError;
 )]
 pub struct LightingFilterParams {
     /// Variance of a pixel about the mean of its colour, $`ν`$ (Y, U, V), the same for all colours: shade over the field, vignetting, noise.
+    /// [Schulz & Fox 2004, Eq. 1]
     pub pixel_color_variance: Vector3<f64>,
     /// Variance of an image's mean of a colour about the light's, (Y, U, V). The paper uses $`ν`$: the part of a colour in one image has its own
     /// shade, which averaging over pixels does not remove.

@@ -1,24 +1,24 @@
 use super::{
-    FeatureLikelihood, FeatureLikelihoodParams, FrameContext, JointScratch, LikelihoodModel, PixelFrame,
-    PixelLikelihoodParams, PoseView,
+    FeatureLikelihood, FeatureLikelihoodParams, LikelihoodFrameInput, LikelihoodModel, PixelLikelihoodFrame,
+    PixelLikelihoodParams, PixelLikelihoodScratch, PredictedMapView,
 };
 use crate::{ColorModelError, LightingTracker};
 
 /// The likelihoods of this crate, to choose from at run time.
 ///
 /// ```
-/// use wayfix_color_model::{ImageLikelihood, PixelLikelihoodParams};
-/// assert_eq!(ImageLikelihood::default(), ImageLikelihood::Pixels(PixelLikelihoodParams::default()));
+/// use wayfix_color_model::{ImageLikelihoodChoice, PixelLikelihoodParams};
+/// assert_eq!(ImageLikelihoodChoice::default(), ImageLikelihoodChoice::Pixels(PixelLikelihoodParams::default()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImageLikelihood {
+pub enum ImageLikelihoodChoice {
     /// All pixels that the map shows. [Schulz & Fox 2004, Eq. 16]
     Pixels(PixelLikelihoodParams),
     /// Bearings and areas of blobs. [Schulz & Fox 2004, VI]
     Features(FeatureLikelihoodParams),
 }
 
-impl Default for ImageLikelihood {
+impl Default for ImageLikelihoodChoice {
     fn default() -> Self {
         Self::Pixels(PixelLikelihoodParams::default())
     }
@@ -32,11 +32,11 @@ pub enum EitherLikelihood<P, F> {
     Features(F),
 }
 
-impl LikelihoodModel for ImageLikelihood {
-    type Frame = EitherLikelihood<PixelFrame, FeatureLikelihood>;
-    type Scratch = EitherLikelihood<JointScratch, FeatureLikelihood>;
+impl LikelihoodModel for ImageLikelihoodChoice {
+    type Frame = EitherLikelihood<PixelLikelihoodFrame, FeatureLikelihood>;
+    type Scratch = EitherLikelihood<PixelLikelihoodScratch, FeatureLikelihood>;
 
-    fn frame(&self, context: &FrameContext<'_>) -> Result<Self::Frame, ColorModelError> {
+    fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<Self::Frame, ColorModelError> {
         Ok(match self {
             Self::Pixels(pixels) => EitherLikelihood::Pixels(pixels.frame(context)?),
             Self::Features(features) => EitherLikelihood::Features(features.frame(context)?),
@@ -45,7 +45,7 @@ impl LikelihoodModel for ImageLikelihood {
 
     fn scratch(&self, frame: &Self::Frame) -> Self::Scratch {
         match frame {
-            EitherLikelihood::Pixels(_) => EitherLikelihood::Pixels(JointScratch::new()),
+            EitherLikelihood::Pixels(_) => EitherLikelihood::Pixels(PixelLikelihoodScratch::new()),
             EitherLikelihood::Features(features) => EitherLikelihood::Features(features.clone()),
         }
     }
@@ -54,7 +54,7 @@ impl LikelihoodModel for ImageLikelihood {
         &self,
         frame: &Self::Frame,
         scratch: &mut Self::Scratch,
-        view: &PoseView<'_>,
+        view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
     ) {

@@ -12,14 +12,16 @@ mod pixel;
 mod span;
 mod view;
 
-pub use choice::{EitherLikelihood, ImageLikelihood};
+pub use choice::{EitherLikelihood, ImageLikelihoodChoice};
 pub use density::PixelSumDensity;
 pub use feature::FeatureLikelihood;
 pub(crate) use feature::feature_colors;
 pub use feature_params::FeatureLikelihoodParams;
 pub(crate) use joint::JointLikelihood;
-pub use model::{FrameContext, JointScratch, LikelihoodModel, PixelFrame, PoseView};
-pub use occlusion::Occlusion;
+pub use model::{
+    LikelihoodFrameInput, LikelihoodModel, PixelLikelihoodFrame, PixelLikelihoodScratch, PredictedMapView,
+};
+pub use occlusion::ViewOcclusionModel;
 pub(crate) use occlusion::or_hidden;
 pub use params::{LightErrorCorrelation, PixelLikelihoodParams};
 pub use pixel::PixelLikelihood;

@@ -27,7 +27,7 @@ pub trait LikelihoodModel: Send + Sync {
     ///
     /// # Errors
     /// Returns an error if the image does not fit the camera.
-    fn frame(&self, context: &FrameContext<'_>) -> Result<Self::Frame, ColorModelError>;
+    fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<Self::Frame, ColorModelError>;
 
     /// Working memory for one thread.
     fn scratch(&self, frame: &Self::Frame) -> Self::Scratch;
@@ -37,14 +37,14 @@ pub trait LikelihoodModel: Send + Sync {
         &self,
         frame: &Self::Frame,
         scratch: &mut Self::Scratch,
-        view: &PoseView<'_>,
+        view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
     );
 }
 
 /// An image and what is known about it before any pose.
-pub struct FrameContext<'a> {
+pub struct LikelihoodFrameInput<'a> {
     /// The image.
     pub image: &'a YuvImage,
     /// The map.
@@ -60,7 +60,7 @@ pub struct FrameContext<'a> {
 }
 
 /// What the map shows from one camera pose.
-pub struct PoseView<'a> {
+pub struct PredictedMapView<'a> {
     /// Pose of the camera in the world.
     pub camera_pose: &'a Pose3<f64>,
     /// Sums of the pixels of each colour.
@@ -69,7 +69,7 @@ pub struct PoseView<'a> {
 
 /// Frame of the pixel likelihood.
 #[derive(Clone, Copy, Debug)]
-pub struct PixelFrame {
+pub struct PixelLikelihoodFrame {
     pub(crate) n_pixels: usize,
     pub(crate) pixel_color_variance: Vector3<f64>,
     pub(crate) mean_color_variance: Vector3<f64>,
@@ -77,27 +77,27 @@ pub struct PixelFrame {
 
 /// The pixel product, from the sums of spans.
 impl LikelihoodModel for PixelLikelihoodParams {
-    type Frame = PixelFrame;
-    type Scratch = JointScratch;
+    type Frame = PixelLikelihoodFrame;
+    type Scratch = PixelLikelihoodScratch;
 
-    fn frame(&self, context: &FrameContext<'_>) -> Result<PixelFrame, ColorModelError> {
-        let FrameContext { image, pixel_color_variance, mean_color_variance, .. } = *context;
-        Ok(PixelFrame { n_pixels: image.pixels().len(), pixel_color_variance, mean_color_variance })
+    fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<PixelLikelihoodFrame, ColorModelError> {
+        let LikelihoodFrameInput { image, pixel_color_variance, mean_color_variance, .. } = *context;
+        Ok(PixelLikelihoodFrame { n_pixels: image.pixels().len(), pixel_color_variance, mean_color_variance })
     }
 
-    fn scratch(&self, _frame: &PixelFrame) -> JointScratch {
-        JointScratch::new()
+    fn scratch(&self, _frame: &PixelLikelihoodFrame) -> PixelLikelihoodScratch {
+        PixelLikelihoodScratch::new()
     }
 
     fn log_likelihoods<T: LightingTracker>(
         &self,
-        frame: &PixelFrame,
-        JointScratch(joint): &mut JointScratch,
-        view: &PoseView<'_>,
+        frame: &PixelLikelihoodFrame,
+        PixelLikelihoodScratch(joint): &mut PixelLikelihoodScratch,
+        view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
     ) {
-        let PixelFrame { n_pixels, pixel_color_variance, mean_color_variance } = frame;
+        let PixelLikelihoodFrame { n_pixels, pixel_color_variance, mean_color_variance } = frame;
         if self.light_error_correlation == LightErrorCorrelation::Common {
             joint.set_sums(view.sums, self, pixel_color_variance, *n_pixels);
         }
@@ -116,9 +116,9 @@ impl LikelihoodModel for PixelLikelihoodParams {
 }
 
 /// Working memory of [`PixelLikelihoodParams`] as a [`LikelihoodModel`].
-pub struct JointScratch(pub(crate) JointLikelihood);
+pub struct PixelLikelihoodScratch(pub(crate) JointLikelihood);
 
-impl JointScratch {
+impl PixelLikelihoodScratch {
     pub(crate) fn new() -> Self {
         Self(JointLikelihood::new())
     }
@@ -147,7 +147,7 @@ impl LikelihoodModel for FeatureLikelihoodParams {
     type Frame = FeatureLikelihood;
     type Scratch = FeatureLikelihood;
 
-    fn frame(&self, context: &FrameContext<'_>) -> Result<FeatureLikelihood, ColorModelError> {
+    fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<FeatureLikelihood, ColorModelError> {
         let labels = PixelClassifier::new(context.colors.iter().copied())?
             .with_background(BackgroundColorModel::Uniform)
             .classify_image(context.image);
@@ -162,7 +162,7 @@ impl LikelihoodModel for FeatureLikelihoodParams {
         &self,
         _frame: &FeatureLikelihood,
         scratch: &mut FeatureLikelihood,
-        view: &PoseView<'_>,
+        view: &PredictedMapView<'_>,
         _light: &T,
         log_likelihoods: &mut [f64],
     ) {

@@ -3,8 +3,8 @@
 /// With probability $`h`$ the view is hidden, and the frame shows the background: its likelihood relative to the background is $`(1 - h)\, p(z | x) / p_{bg}(z) + h`$. So
 /// a hidden view speaks neither against a place nor for one that does not see the map.
 /// ```
-/// use wayfix_color_model::Occlusion;
-/// let occlusion = Occlusion { mean_time_free: 9.0, mean_time_hidden: 1.0 };
+/// use wayfix_color_model::ViewOcclusionModel;
+/// let occlusion = ViewOcclusionModel { mean_time_free: 9.0, mean_time_hidden: 1.0 };
 /// assert!((occlusion.share() - 0.1).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,20 +14,20 @@
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct Occlusion {
+pub struct ViewOcclusionModel {
     /// Mean time of a free view, s. Default 10.
     pub mean_time_free: f64,
     /// Mean time of a hidden view, s; 0 if no view is ever hidden. Default 1.
     pub mean_time_hidden: f64,
 }
 
-impl Default for Occlusion {
+impl Default for ViewOcclusionModel {
     fn default() -> Self {
         Self { mean_time_free: 10.0, mean_time_hidden: 1.0 }
     }
 }
 
-impl Occlusion {
+impl ViewOcclusionModel {
     /// Share of hidden views.
     pub fn share(&self) -> f64 {
         self.mean_time_hidden / (self.mean_time_free + self.mean_time_hidden)
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn hidden_view_costs_once() {
-        let occlusion = Occlusion::default();
+        let occlusion = ViewOcclusionModel::default();
         let (mut hidden, mut cost) = (occlusion.share(), Vec::new());
         for _ in 0..10 {
             hidden = occlusion.predict(hidden, 0.1);

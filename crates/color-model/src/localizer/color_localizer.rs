@@ -7,19 +7,19 @@ use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
 use super::{
     FrameOutcome, LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep,
-    PoseEstimate, Start,
+    PoseEstimate, StartPosePrior,
     buffer::{BufferedFrame, FrameBuffer},
     camera::CameraLocation,
     estimate::{PLACE_RADIUS, is_same_place},
     filter::ColorFilter,
-    frame::{PreparedFrame, Scene},
+    frame::{PreparedFrame, Scene, check_frame},
     odometry::OdometryDelta,
     search::{Found, Search},
     start::Area,
 };
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, LightingBank, LightingTracker, LikelihoodModel,
-    PixelLikelihoodParams, YuvImage,
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingFilterBank, LightingTracker,
+    LikelihoodModel, PixelLikelihoodParams, YuvImage,
 };
 
 /// Probability of a place from which on it is tracked.
@@ -36,15 +36,15 @@ const TRACKING_PROBABILITY: f64 = 0.95;
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use rand::SeedableRng;
 /// use wayfix_color_map::{PinholeCamera, ColorId, ColorMap, ColoredShape};
-/// use wayfix_color_model::{ColorLocalizer, LightingBank, LightingFilter, LightingFilterParams, LocalizerParams, OdometryStep, Start, YuvImage};
+/// use wayfix_color_model::{ColorLocalizer, LightingFilterBank, LightingFilter, LightingFilterParams, LocalizerParams, OdometryStep, StartPosePrior, YuvImage};
 /// use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 /// use wayfix_gaussian_core::Gaussian;
 /// use wayfix_kalman::MarkovChain;
 /// let vertices = [(-2.0, -1.5), (2.0, -1.5), (2.0, 1.5), (-2.0, 1.5)].map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
 /// let map = ColorMap::new(vec!["green".into()], vec![ColoredShape::Polygon { color: ColorId(0), vertices }])?;
 /// let prior = Gaussian::new(DVector::from_vec(vec![70.0, 120.0, 110.0]), DMatrix::identity(3, 3) * 400.0)?;
-/// let bank = LightingBank::new(vec![LightingFilter::new(prior, LightingFilterParams::default())?], MarkovChain::sticky(1, 1.0)?)?;
-/// let start = Start::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
+/// let bank = LightingFilterBank::new(vec![LightingFilter::new(prior, LightingFilterParams::default())?], MarkovChain::sticky(1, 1.0)?)?;
+/// let start = StartPosePrior::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
 /// let camera = PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?;
 /// let mut localizer = ColorLocalizer::new(Arc::new(map), camera, bank, &start, LocalizerParams::default(), &mut rng)?;
@@ -58,7 +58,7 @@ const TRACKING_PROBABILITY: f64 = 0.95;
 /// assert!(localizer.light().member(0).mean()[0] > 75.0); // the carpet is brighter than the prior's 70
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct ColorLocalizer<T = LightingBank, M = OdometryNoise, L = PixelLikelihoodParams> {
+pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLikelihoodParams> {
     map: Arc<ColorMap>,
     camera: PinholeCamera,
     area: Area,
@@ -66,7 +66,7 @@ pub struct ColorLocalizer<T = LightingBank, M = OdometryNoise, L = PixelLikeliho
     params: LocalizerParams,
     odometry: M,
     likelihood: L,
-    start: Start,
+    start: StartPosePrior,
     /// The light before the first frame.
     prior: Arc<T>,
     /// The most probable place.
@@ -93,7 +93,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
         map: Arc<ColorMap>,
         camera: PinholeCamera,
         light: T,
-        start: &Start,
+        start: &StartPosePrior,
         params: LocalizerParams,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
@@ -115,7 +115,7 @@ where
         map: Arc<ColorMap>,
         camera: PinholeCamera,
         (light, odometry, likelihood): (T, M, L),
-        start: &Start,
+        start: &StartPosePrior,
         params: LocalizerParams,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
@@ -126,7 +126,8 @@ where
         }
         let area = Area::of(&map)?;
         let prior = Arc::new(light);
-        let location = |_| CameraLocation { body: start.draw(&area, rng), error: params.camera.sample(rng) };
+        let location =
+            |_| CameraLocation { body: start.draw(&area, rng), error: params.camera_pose_noise.sample(rng) };
         Ok(Self {
             present: ColorFilter::new((0..params.max_particles).map(location), &prior)?,
             relocalization: RelocalizationTest::new(params.relocalization)?,
@@ -204,41 +205,59 @@ where
         mount: &Pose3<f64>,
         rng: &mut R,
     ) -> Result<FrameOutcome, ColorModelError> {
-        self.check(image, mount)?;
+        check_frame(&self.camera, image, mount)?;
         let scene = self.scene(&self.likelihood);
         let frame = PreparedFrame::new(&scene, image, mount, &self.colors()?)?;
+        let light_before = self.present.light().unwrap_or(&self.prior).clone();
         let mut present = self.present.clone();
-        let light = self.present.light().unwrap_or(&self.prior).clone();
         self.step(&mut present, &frame, rng)?;
-        let mut relocalization = self.relocalization.clone();
-        let odometry = self.delta;
-        let log_evidence = present.weighing.log_evidence;
-        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry, log_evidence };
-        let share =
-            self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(&newest)));
-        let step = |alternative: &mut ColorFilter<T>| match self.step(alternative, &frame, rng) {
-            Ok(()) => share * alternative.weighing.log_evidence,
-            Err(_) => f64::NEG_INFINITY,
+
+        let newest = BufferedFrame {
+            image: image.clone(),
+            mount: *mount,
+            odometry: self.delta,
+            log_evidence: present.weighing.log_evidence,
         };
-        relocalization.observe(share * log_evidence, step)?;
+        let mut relocalization = self.relocalization.clone();
+        self.test_alternatives(&mut relocalization, &frame, &newest, rng)?;
         let mut buffer = self.buffer.clone();
-        buffer.push(newest, self.params.search.n_frames);
+        buffer.push(newest, self.params.search.n_buffered_frames);
         let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
         if relocalization.decide(&mut present) {
             present.set_max_particles(self.params.max_particles);
             buffer.forget_evidence();
         }
-
-        self.n_updates += 1;
         self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
-        self.log_ratios.push_back(present.weighing.mean_log_likelihood);
-        self.lights.push_back(light);
-        let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_frames);
+        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
+        self.remember_frame(light_before);
+        self.outcome()
+    }
+
+    /// Compares the alternatives with the present place by the frame.
+    fn test_alternatives<R: Rng + ?Sized>(
+        &self,
+        relocalization: &mut RelocalizationTest<ColorFilter<T>>,
+        frame: &PreparedFrame<'_, L>,
+        newest: &BufferedFrame,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
+        let share = self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(newest)));
+        let log_evidence = |alternative: &mut ColorFilter<T>| match self.step(alternative, frame, rng) {
+            Ok(()) => share * alternative.weighing.log_evidence,
+            Err(_) => f64::NEG_INFINITY,
+        };
+        Ok(relocalization.observe(share * newest.log_evidence, log_evidence)?)
+    }
+
+    /// Counts the frame; keeps its light and its evidence for the map as long as the buffer keeps the frame.
+    fn remember_frame(&mut self, light_before: Arc<T>) {
+        self.n_updates += 1;
+        self.delta = OdometryDelta::default();
+        self.log_ratios.push_back(self.present.weighing.mean_log_likelihood);
+        self.lights.push_back(light_before);
+        let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_buffered_frames);
         self.log_ratios.drain(..n_old);
         self.lights.drain(..n_old);
-        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
-        self.delta = OdometryDelta::default();
-        self.outcome()
     }
 
     /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
@@ -265,14 +284,15 @@ where
     ) -> Result<bool, ColorModelError> {
         let params = &self.params.search;
         let (n_frames, is_first) = (self.n_updates + 1, self.n_updates == 0);
-        let is_start = n_frames <= params.n_frames && n_frames.is_power_of_two();
-        let is_due = n_frames > params.n_frames && self.since_search + self.delta.seconds >= params.interval;
+        let is_start = n_frames <= params.n_buffered_frames && n_frames.is_power_of_two();
+        let is_due = n_frames > params.n_buffered_frames
+            && self.since_search + self.delta.seconds >= params.search_interval;
         let is_on = !self.params.relocalization.is_off();
         if params.n_sampled_trajectories == 0 || !(is_start || (is_due && is_on)) {
             return Ok(false);
         }
-        let start = if is_start { &self.start } else { &Start::Anywhere };
-        let frames = buffer.spaced(params.n_frames.div_ceil(2));
+        let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
+        let frames = buffer.spaced(params.n_buffered_frames.div_ceil(2));
         let shares = frames.windows(2).map(|pair| self.independent_share(pair[0].view_change(&pair[1])));
         let share = (1.0 + shares.sum::<f64>()) / frames.len().max(1) as f64; // the first frame is new
         let tracked: f64 = frames.iter().map(|frame| frame.log_evidence).sum();
@@ -344,19 +364,6 @@ where
         }
     }
 
-    fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
-        let expected = (self.camera.width() as usize, self.camera.height() as usize);
-        let got = (image.width() as usize, image.height() as usize);
-        if expected != got {
-            return Err(ColorModelError::FrameSize { expected, got });
-        }
-        let is_unit = (mount.rotation.norm() - 1.0).abs() < f64::from(f32::EPSILON);
-        if !(is_unit && mount.translation.iter().all(|value| value.is_finite())) {
-            return Err(ColorModelError::NotFinite { what: "camera mount" });
-        }
-        Ok(())
-    }
-
     fn outcome(&self) -> Result<FrameOutcome, ColorModelError> {
         let (weighing, pixels) = (&self.present.weighing, &self.params.pixels);
         let alternative_probability = self.relocalization.probability();
@@ -365,7 +372,7 @@ where
         let per_pixel =
             1.0 / pixels.n_effective_pixels.min(f64::from(self.camera.width() * self.camera.height()));
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
-        let n_frames = self.params.search.n_frames;
+        let n_frames = self.params.search.n_buffered_frames;
         // At even odds, the frames tell the map at the estimate from the background.
         let odds = TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
         let is_explained = self.log_ratios.iter().sum::<f64>() > odds.ln();

@@ -17,7 +17,7 @@ use crate::{
     ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums, likelihood::or_hidden,
 };
 
-/// A camera location with its light, $`p(θ | x, z)`$, and what the last frame shows from there. [Schulz & Fox 2004, Eq. 12]
+/// A camera location with its light, $`p(θ | x, z)`$, and what the last frame shows from there. [Schulz & Fox 2004, Eqs. 11–12]
 #[derive(Clone)]
 pub(crate) struct ColorParticle<T> {
     pub(crate) state: RaoBlackwellParticle<CameraLocation, T>,
@@ -79,7 +79,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
     }
 
-    /// Moves each particle.
+    /// Moves each particle. [Schulz & Fox 2004, Eqs. 13, 15]
     pub(crate) fn predict(&mut self, mut moved: impl FnMut(&Pose2<f64>) -> Pose2<f64>) {
         for particle in &mut self.particles {
             particle.state.sampled.body = moved(&particle.state.sampled.body);
@@ -114,7 +114,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
                      particle: &mut ColorParticle<T>,
                      rng: &mut ParticleChunkRng| {
             let location = &mut particle.state.sampled;
-            location.error = params.camera.after(&location.error, seconds, rng);
+            location.error = params.camera_pose_noise.after(&location.error, seconds, rng);
             let light = particle.state.conditional();
             values.resize(light.n_lights(), 0.0);
             particle.sums.resize(frame.n_colors(), PixelSums::default());

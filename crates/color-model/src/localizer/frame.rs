@@ -5,9 +5,9 @@ use wayfix_estimation_traits::Pose3;
 
 use super::{background::ImageHistogram, camera::CameraLocation};
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, FrameContext, LightingFilterParams, LightingTracker,
-    LikelihoodModel, PixelLikelihoodParams, PixelSumDensity, PixelSums, PoseView, PrefixSumImage, YuvImage,
-    gather,
+    BackgroundColorModel, ColorDensity, ColorModelError, LightingFilterParams, LightingTracker,
+    LikelihoodFrameInput, LikelihoodModel, PixelLikelihoodParams, PixelSumDensity, PixelSums,
+    PredictedMapView, PrefixSumImage, YuvImage, gather,
 };
 
 /// Everything that does not change with the frame.
@@ -27,6 +27,24 @@ pub(crate) struct PreparedFrame<'a, L: LikelihoodModel> {
     /// Without the outliers of each colour.
     sums: Vec<PrefixSumImage>,
     frame: L::Frame,
+}
+
+/// Whether the image is of the camera's size and the mount is a pose.
+pub(crate) fn check_frame(
+    camera: &PinholeCamera,
+    image: &YuvImage,
+    mount: &Pose3<f64>,
+) -> Result<(), ColorModelError> {
+    let expected = (camera.width() as usize, camera.height() as usize);
+    let got = (image.width() as usize, image.height() as usize);
+    if expected != got {
+        return Err(ColorModelError::FrameSize { expected, got });
+    }
+    let is_unit = (mount.rotation.norm() - 1.0).abs() < f64::from(f32::EPSILON);
+    if !(is_unit && mount.translation.iter().all(|value| value.is_finite())) {
+        return Err(ColorModelError::NotFinite { what: "camera mount" });
+    }
+    Ok(())
 }
 
 /// Working memory of a thread.
@@ -64,7 +82,7 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
             })
         };
         let sums = map_colors(map.colors().len(), sums_of)?;
-        let context = FrameContext {
+        let context = LikelihoodFrameInput {
             image,
             map,
             camera: *camera,
@@ -103,7 +121,7 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
         {
             return log_likelihoods.fill(f64::NEG_INFINITY);
         }
-        let view = PoseView { camera_pose, sums };
+        let view = PredictedMapView { camera_pose, sums };
         self.scene.likelihood.log_likelihoods(
             &self.frame,
             &mut scratch.likelihood,

@@ -21,4 +21,4 @@ pub use estimate::PoseEstimate;
 pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};
 pub use outcome::{FrameOutcome, LocalizationStatus};
 pub use params::{GlobalSearchParams, LocalizerParams};
-pub use start::Start;
+pub use start::StartPosePrior;

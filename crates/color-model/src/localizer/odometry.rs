@@ -51,9 +51,9 @@ pub struct OdometryNoise {
     /// Standard deviation as a share of the motion: m per m, rad per rad, and rad per m. Default 0.2: the feet of legged robots slip.
     pub relative_sigma: f64,
     /// Standard deviation of the translation, m per square root of a second, also at rest: other robots push. Default 0.03.
-    pub translation_per_root_second: f64,
+    pub translation_sigma_per_root_second: f64,
     /// Standard deviation of the rotation, rad per square root of a second, also at rest. Default 0.06.
-    pub rotation_per_root_second: f64,
+    pub rotation_sigma_per_root_second: f64,
     /// Standard deviation of the speed without odometry, m/s. Default 0.3: the top speed of a walking robot.
     pub speed_sigma_without_odometry: f64,
     /// Standard deviation of the turning rate without odometry, rad/s. Default 1.
@@ -64,8 +64,8 @@ impl Default for OdometryNoise {
     fn default() -> Self {
         Self {
             relative_sigma: 0.2,
-            translation_per_root_second: 0.03,
-            rotation_per_root_second: 0.06,
+            translation_sigma_per_root_second: 0.03,
+            rotation_sigma_per_root_second: 0.06,
             speed_sigma_without_odometry: 0.3,
             turn_rate_sigma_without_odometry: 1.0,
         }
@@ -76,8 +76,8 @@ impl OdometryNoise {
     pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
         [
             ("relative sigma", self.relative_sigma),
-            ("translation per root second", self.translation_per_root_second),
-            ("rotation per root second", self.rotation_per_root_second),
+            ("translation per root second", self.translation_sigma_per_root_second),
+            ("rotation per root second", self.rotation_sigma_per_root_second),
             ("speed sigma without odometry", self.speed_sigma_without_odometry),
             ("turn rate sigma without odometry", self.turn_rate_sigma_without_odometry),
         ]
@@ -98,8 +98,8 @@ impl OdometryModel for OdometryNoise {
         };
         let root = step.seconds.sqrt();
         (
-            translation.hypot(self.translation_per_root_second * root),
-            rotation.hypot(self.rotation_per_root_second * root),
+            translation.hypot(self.translation_sigma_per_root_second * root),
+            rotation.hypot(self.rotation_sigma_per_root_second * root),
         )
     }
 }

@@ -1,7 +1,7 @@
 use wayfix_integrity::RelocalizationParams;
 
 use super::{CameraPoseNoise, OdometryNoise};
-use crate::{ColorModelError, Occlusion, PixelLikelihoodParams};
+use crate::{ColorModelError, PixelLikelihoodParams, ViewOcclusionModel};
 
 /// Parameters of [`ColorLocalizer`](crate::ColorLocalizer).
 ///
@@ -23,7 +23,7 @@ pub struct LocalizerParams {
     /// Noise of the odometry.
     pub odometry: OdometryNoise,
     /// Noise of the camera's pose on the body.
-    pub camera: CameraPoseNoise,
+    pub camera_pose_noise: CameraPoseNoise,
     /// Global search at the start and for relocalization.
     pub search: GlobalSearchParams,
     /// The change test between the present pose and the places that a search finds; off with `false_alarms_per_km` 0.
@@ -35,7 +35,7 @@ pub struct LocalizerParams {
     /// Smallest number of pixels from which the mean of a colour is taken. Default 30.
     pub min_pixels: u64,
     /// How often and for how long an object hides the whole view.
-    pub occlusion: Occlusion,
+    pub occlusion: ViewOcclusionModel,
     /// Index of a colour in the map whose means the lighting filter ignores: its estimate then comes from the other colours. Default none.
     pub withheld_color: Option<usize>,
 }
@@ -51,7 +51,7 @@ pub struct LocalizerParams {
 pub struct GlobalSearchParams {
     /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
     /// Default 16.
-    pub n_frames: usize,
+    pub n_buffered_frames: usize,
     /// Number of trajectories drawn; 0 never searches. Default 4000: one for each 0.3 m × 0.3 m × 0.3 rad of a field of 4 × 3 m, about.
     pub n_sampled_trajectories: usize,
     /// Number of places that are refined at first; it is halved three times. Default 100.
@@ -59,17 +59,17 @@ pub struct GlobalSearchParams {
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_first_round_moves: u32,
     /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
-    pub interval: f64,
+    pub search_interval: f64,
 }
 
 impl Default for GlobalSearchParams {
     fn default() -> Self {
         Self {
-            n_frames: 16,
+            n_buffered_frames: 16,
             n_sampled_trajectories: 4000,
             n_refined_places: 100,
             n_first_round_moves: 10,
-            interval: 1.0,
+            search_interval: 1.0,
         }
     }
 }
@@ -79,20 +79,21 @@ impl Default for LocalizerParams {
         Self {
             pixels: PixelLikelihoodParams::default(),
             odometry: OdometryNoise::default(),
-            camera: CameraPoseNoise::default(),
+            camera_pose_noise: CameraPoseNoise::default(),
             search: GlobalSearchParams::default(),
             relocalization: RelocalizationParams::default(),
             max_particles: 1000,
             tempering_min_ess_share: 0.2,
             min_pixels: 30,
-            occlusion: Occlusion::default(),
+            occlusion: ViewOcclusionModel::default(),
             withheld_color: None,
         }
     }
 }
 
 impl LocalizerParams {
-    /// The method of [Schulz & Fox 2004, IV] alone: the pixel product of Eq. 16, particles from the start distribution, no search, no tempering, no hidden
+    /// The method of [Schulz & Fox 2004, IV] alone: the pixel product [Schulz & Fox 2004, Eq. 16], particles from the start distribution, no
+    /// search, no tempering, no hidden
     /// frames.
     pub fn as_published() -> Self {
         Self {
@@ -100,7 +101,7 @@ impl LocalizerParams {
             search: GlobalSearchParams { n_sampled_trajectories: 0, ..GlobalSearchParams::default() },
             relocalization: RelocalizationParams::off(),
             tempering_min_ess_share: 0.0,
-            occlusion: Occlusion { mean_time_hidden: 0.0, ..Occlusion::default() },
+            occlusion: ViewOcclusionModel { mean_time_hidden: 0.0, ..ViewOcclusionModel::default() },
             ..Self::default()
         }
     }
@@ -108,7 +109,7 @@ impl LocalizerParams {
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         self.pixels.check()?;
         self.relocalization.validate()?;
-        let CameraPoseNoise { rotation_sigma, height_sigma, correlation_time } = self.camera;
+        let CameraPoseNoise { rotation_sigma, height_sigma, correlation_time } = self.camera_pose_noise;
         let camera = [
             ("camera rotation sigma", rotation_sigma),
             ("camera height sigma", height_sigma),
@@ -119,11 +120,11 @@ impl LocalizerParams {
             .values()
             .into_iter()
             .chain(camera)
-            .chain([("search interval", self.search.interval)]);
+            .chain([("search interval", self.search.search_interval)]);
         for (what, value) in not_negative {
             check(what, value, 0.0, f64::MAX)?;
         }
-        check("number of frames", self.search.n_frames as f64, 1.0, f64::MAX)?;
+        check("number of frames", self.search.n_buffered_frames as f64, 1.0, f64::MAX)?;
         check("number of places", self.search.n_refined_places as f64, 1.0, f64::MAX)?;
         check("number of moves", f64::from(self.search.n_first_round_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;

@@ -7,7 +7,7 @@ use wayfix_gaussian_core::log_sum_exp;
 use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
 use super::{
-    LocalizerParams, Start,
+    LocalizerParams, StartPosePrior,
     background::ImageHistogram,
     buffer::BufferedFrame,
     camera::CameraLocation,
@@ -19,8 +19,8 @@ use super::{
     trajectory::Trajectory,
 };
 use crate::{
-    ColorModelError, JointScratch, LightingTracker, LikelihoodModel, PixelClassifier, PixelFrame,
-    PixelLikelihoodParams, PixelSums, PoseView, PrefixSumImage, gather,
+    ColorModelError, LightingTracker, LikelihoodModel, PixelClassifier, PixelLikelihoodFrame,
+    PixelLikelihoodParams, PixelLikelihoodScratch, PixelSums, PredictedMapView, PrefixSumImage, gather,
 };
 
 /// Images are searched at half the resolution.
@@ -40,7 +40,7 @@ const MIN_MAP_SHARE: f64 = 0.1;
 pub(crate) struct Search<'a, T> {
     scene: Scene<'a, PixelLikelihoodParams>,
     area: &'a Area,
-    start: &'a Start,
+    start: &'a StartPosePrior,
     params: &'a LocalizerParams,
     /// The light before the first frame of all, and the one before the buffered frames: the latter is the better one if the place was right.
     lights: [&'a Arc<T>; 2],
@@ -77,7 +77,7 @@ struct Candidate {
 /// Working memory of a thread.
 struct Scratch {
     projector: MapRenderer,
-    joint: JointScratch,
+    joint: PixelLikelihoodScratch,
     frames: Vec<Vec<PixelSums>>,
     values: Vec<f64>,
 }
@@ -94,7 +94,7 @@ enum Effort {
 impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     pub(crate) fn new(
         scene: Scene<'a, PixelLikelihoodParams>,
-        (area, start): (&'a Area, &'a Start),
+        (area, start): (&'a Area, &'a StartPosePrior),
         params: &'a LocalizerParams,
         lights: [&'a Arc<T>; 2],
         buffered: Vec<BufferedFrame>,
@@ -152,7 +152,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     /// A candidate that the start allows. If that is anywhere, every other one shows a landmark where a frame does.
     fn drawn<R: Rng + ?Sized>(&self, n: usize, rng: &mut R) -> Candidate {
         let detected = match self.start {
-            Start::Anywhere if n.is_multiple_of(2) => self.detections.draw(self.area, rng),
+            StartPosePrior::Anywhere if n.is_multiple_of(2) => self.detections.draw(self.area, rng),
             _ => None,
         };
         let (at, pose) = detected.unwrap_or_else(|| (0, self.start.draw(self.area, rng)));
@@ -200,7 +200,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     /// The evidence of the frames, $`\ln \sum_j π_j \int \prod_{k ∉ H} p(z_k | x_k, θ)\, p_j(θ)\, dθ + |H| \ln h + (n - |H|) \ln (1 - h)`$, and of the prior. Frames are
     /// added to the hidden ones $`H`$ as long as that raises it.
     fn weigh(&self, scratch: &mut Scratch, candidate: &mut Candidate, effort: Effort) {
-        let locations = candidate.trajectory.locations(&self.buffered, &self.params.camera);
+        let locations = candidate.trajectory.locations(&self.buffered, &self.params.camera_pose_noise);
         let n = self.frames.len();
         let stride = if effort == Effort::Coarse { n.div_ceil(2).max(1) } else { 1 };
         let used: Vec<usize> = (0..n).rev().step_by(stride).collect();
@@ -256,13 +256,13 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
 
     /// The most probable light, and the log-likelihood that all lights sum to. Both trackers are equally probable.
     fn evidence(&self, scratch: &mut Scratch, sums: &[PixelSums]) -> ((usize, usize), LogWeight) {
-        let frame = PixelFrame {
+        let frame = PixelLikelihoodFrame {
             n_pixels: self.frames.first().map_or(1, PrefixSumImage::n_pixels),
             pixel_color_variance: self.scene.noise.pixel_color_variance,
             mean_color_variance: self.scene.noise.mean_color_variance,
         };
         let Scratch { values, joint, .. } = scratch;
-        let view = PoseView { camera_pose: &Pose3::identity(), sums };
+        let view = PredictedMapView { camera_pose: &Pose3::identity(), sums };
         let n_lights = self.lights[0].n_lights();
         values.resize(2 * n_lights, 0.0);
         for (light, values) in self.lights.iter().zip(values.chunks_mut(n_lights)) {
@@ -291,7 +291,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let _ = light.update_in(at, &color_means(&candidate.sums, self.params));
         let newest = candidate
             .trajectory
-            .locations(&self.buffered, &self.params.camera)
+            .locations(&self.buffered, &self.params.camera_pose_noise)
             .pop()
             .ok_or(ColorModelError::NoPose)?;
         let location = |_| {
@@ -317,7 +317,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let scratch = || Scratch {
             projector: MapRenderer::new(Arc::clone(self.scene.map), self.scene.camera),
-            joint: JointScratch::new(),
+            joint: PixelLikelihoodScratch::new(),
             frames: vec![vec![PixelSums::default(); self.scene.map.colors().len()]; self.frames.len()],
             values: Vec::new(),
         };

@@ -7,7 +7,7 @@ use crate::ColorModelError;
 
 /// Prior of the start pose.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Start {
+pub enum StartPosePrior {
     /// Normally distributed.
     Near(Gaussian<Pose2<f64>>),
     /// Uniform over the map, with any heading.
@@ -53,7 +53,7 @@ impl Area {
     }
 }
 
-impl Start {
+impl StartPosePrior {
     /// A pose that the start allows.
     pub(crate) fn draw<R: Rng + ?Sized>(&self, area: &Area, rng: &mut R) -> Pose2<f64> {
         match self {

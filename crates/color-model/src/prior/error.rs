@@ -1,4 +1,4 @@
-use wayfix_gaussian_core::{GaussianError, HierarchicalFit, IterationError};
+use wayfix_gaussian_core::{GaussianError, HierarchicalGaussianFit, IterationError};
 
 /// Errors of learning or reading a prior.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -54,7 +54,7 @@ pub enum LightingPriorError {
     Gaussian(#[from] GaussianError),
     /// A prior was not found in the given number of iterations; with the last estimate.
     #[error("the prior of a group of venues: {0}")]
-    Learning(#[from] IterationError<Box<HierarchicalFit>>),
+    Learning(#[from] IterationError<Box<HierarchicalGaussianFit>>),
 }
 
 /// A number that must be positive and finite.

@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use wayfix_gaussian_core::GroupStatistics;
+use wayfix_gaussian_core::PooledGroupEstimate;
 
 use super::{LightingPriorError, PooledPixelVariance, TrainingVenue};
 use crate::ColorMeans;
@@ -9,8 +9,8 @@ pub(super) fn evidence(
     venue: &TrainingVenue,
     n_colors: usize,
     mean_color_variance: &Vector3<f64>,
-) -> Result<GroupStatistics, LightingPriorError> {
-    let mut group = GroupStatistics::new(3 * n_colors);
+) -> Result<PooledGroupEstimate, LightingPriorError> {
+    let mut group = PooledGroupEstimate::new(3 * n_colors);
     for (color, mean) in venue.images.iter().flat_map(ColorMeans::seen) {
         let first = 3 * usize::from(color.0);
         group.observe(&[first, first + 1, first + 2], mean.as_slice(), mean_color_variance.as_slice())?;

@@ -4,9 +4,10 @@ use wayfix_gaussian_core::{GaussianError, IterationError, fit_hierarchical};
 use super::evidence::{evidence, pooled_mean_color_variance, pooled_pixel_color_variance};
 use super::{LightingPriorError, LightingPriors, PriorLearningParams, TrainingVenue, k_means};
 
-/// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B]
+/// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B, Fig. 2]
 ///
-/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10 ([`fit_hierarchical`]).
+/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes [Schulz & Fox 2004, Eq. 10]
+/// ([`fit_hierarchical`]).
 /// Colours not in an image are missing, not estimated.
 /// ```
 /// use nalgebra::Vector3;

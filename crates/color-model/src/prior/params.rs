@@ -1,5 +1,5 @@
 use nalgebra::{DMatrix, Vector3};
-use wayfix_gaussian_core::{HierarchicalParams, InverseWishart};
+use wayfix_gaussian_core::{HierarchicalGaussianParams, InverseWishart};
 
 use super::{
     LightingPriorError,
@@ -10,9 +10,9 @@ use super::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorLearningParams {
     /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior. Default 30, 10, 10.
-    pub color_sigmas: Vector3<f64>,
+    pub prior_color_sigmas: Vector3<f64>,
     /// Correlation of two colours between venues before any is seen, in Y as in U and V: one light falls on all of them. Default 0.9.
-    pub color_correlation: f64,
+    pub prior_color_correlation: f64,
     /// Weight of the hyperprior, in venues. Default 3.
     pub n_pseudo_venues: f64,
     /// Variance of an image's mean of a colour about its venue's, (Y, U, V). Default none: pooled over the training images.
@@ -21,7 +21,7 @@ pub struct PriorLearningParams {
     pub pixel_color_variance: Vector3<f64>,
     /// Number of starts of k-means; the best result counts. Default 20.
     pub n_restarts: usize,
-    /// Tolerance of EM: see [`HierarchicalParams`]. Default 1e-6 nats, or 10 000 iterations.
+    /// Tolerance of EM: see [`HierarchicalGaussianParams`]. Default 1e-6 nats, or 10 000 iterations.
     pub tolerance: f64,
     /// See `tolerance`.
     pub max_iterations: usize,
@@ -30,8 +30,8 @@ pub struct PriorLearningParams {
 impl Default for PriorLearningParams {
     fn default() -> Self {
         Self {
-            color_sigmas: Vector3::new(30.0, 10.0, 10.0),
-            color_correlation: 0.9,
+            prior_color_sigmas: Vector3::new(30.0, 10.0, 10.0),
+            prior_color_correlation: 0.9,
             n_pseudo_venues: 3.0,
             mean_color_variance: None,
             pixel_color_variance: Vector3::new(144.0, 36.0, 36.0),
@@ -47,23 +47,26 @@ impl PriorLearningParams {
         let noise =
             self.mean_color_variance.iter().flat_map(|noise| noise.iter()).chain(&self.pixel_color_variance);
         noise.into_iter().try_for_each(|variance| check_positive("variance of the noise", *variance))?;
-        self.color_sigmas.iter().try_for_each(|sigma| check_positive("sigma of a colour", *sigma))?;
-        check_correlation("correlation of colours", self.color_correlation)?;
+        self.prior_color_sigmas.iter().try_for_each(|sigma| check_positive("sigma of a colour", *sigma))?;
+        check_correlation("correlation of colours", self.prior_color_correlation)?;
         check_positive("number of pseudo-venues", self.n_pseudo_venues)?;
         check_positive("number of restarts", self.n_restarts as f64)
     }
 
     /// The hyperprior for `n_colors` colours, and the stopping criterion.
-    pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, LightingPriorError> {
+    pub(super) fn hierarchical(
+        &self,
+        n_colors: usize,
+    ) -> Result<HierarchicalGaussianParams, LightingPriorError> {
         let mode = DMatrix::from_fn(3 * n_colors, 3 * n_colors, |i, j| {
             let correlation = match (i == j, i % 3 == j % 3) {
                 (true, _) => 1.0,
-                (false, true) => self.color_correlation,
+                (false, true) => self.prior_color_correlation,
                 (false, false) => 0.0,
             };
-            correlation * self.color_sigmas[i % 3] * self.color_sigmas[j % 3]
+            correlation * self.prior_color_sigmas[i % 3] * self.prior_color_sigmas[j % 3]
         });
-        Ok(HierarchicalParams {
+        Ok(HierarchicalGaussianParams {
             covariance_prior: Some(InverseWishart::from_mode(&mode, self.n_pseudo_venues)?),
             mean_prior: None,
             tolerance: self.tolerance,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::Rng;
 use wayfix_color_map::{ColorId, ColorMap, MapRenderer, PinholeCamera};
-use wayfix_color_model::{LightingBank, LightingFilter, LightingFilterParams, YuvImage};
+use wayfix_color_model::{LightingFilter, LightingFilterBank, LightingFilterParams, YuvImage};
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
@@ -101,7 +101,7 @@ pub(crate) fn light() -> LightingFilter {
     LightingFilter::new(prior, LightingFilterParams::default()).expect("default parameters")
 }
 
-pub(crate) fn bank() -> LightingBank {
+pub(crate) fn bank() -> LightingFilterBank {
     let chain = MarkovChain::sticky(1, 1.0).expect("a probability");
-    LightingBank::new(vec![light()], chain).expect("one of each")
+    LightingFilterBank::new(vec![light()], chain).expect("one of each")
 }

@@ -17,7 +17,7 @@ pub struct MostProbableState {
     pub confidence: f64,
 }
 
-/// A Bayes filter over a finite set of states: state condensation. [Kasprzak & Szynkiewicz, Eqs. 1-6]
+/// A Bayes filter over a finite set of states: state condensation. [Kasprzak & Szynkiewicz, Eqs. 1–6, Fig. 1]
 ///
 /// Belief is kept as probabilities, measurements come as log-likelihoods, and the product is scaled by the best of them before it leaves
 /// the logarithm; if that underflows (the measurement speaks for states that belief all but excludes) it is done in logarithms
@@ -74,7 +74,7 @@ impl DiscreteFilter {
         Ok(Self { next: vec![0.0; weights.len()], belief: weights })
     }
 
-    /// Belief of the next step, Eqs. 4 and 5: a transition or a diffusion kernel.
+    /// Belief of the next step: a transition or a diffusion kernel. [Kasprzak & Szynkiewicz, Eqs. 4–5]
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the transition is of another space.

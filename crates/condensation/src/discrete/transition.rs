@@ -1,4 +1,4 @@
-/// Where belief goes in one step: $`\hat b(s') = \sum_s p(s' \mid s)\, b(s)`$. [Kasprzak & Szynkiewicz, Eq. 4]
+/// Where belief goes in one step: $`\hat b(s') = \sum_s p(s' \mid s)\, b(s)`$. [Kasprzak & Szynkiewicz, Eqs. 3–4]
 ///
 /// Linear, so it carries any quantity that goes with the state, not belief alone. **Laws**: what comes out has the sum of what
 /// went in; nonnegative stays nonnegative.

@@ -4,7 +4,7 @@ use image::RgbImage;
 
 use crate::features::columns::ColumnSums;
 use crate::features::picture::grey;
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
+use crate::{CondensationError, GlobalDescriptor, StateDescriptorTable, View, ViewGrid};
 
 /// The moduli of the first six Fourier components of the grey values, $`[|F_{0,0}|, …, |F_{0,5}|]`$. [Kasprzak & Szynkiewicz, Eq. 7]
 ///
@@ -42,9 +42,13 @@ impl GlobalDescriptor for Fft6Descriptor {
         moduli(&columns, &waves(view.width()), view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(
+        &self,
+        scene: &RgbImage,
+        views: &ViewGrid,
+    ) -> Result<StateDescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = DescriptorTable::zeros(views.grid(), N);
+        let mut table = StateDescriptorTable::zeros(views.grid(), N);
         let (view_width, view_height) = views.view_size();
         let waves = waves(view_width);
         let (grey, (width, _)) = (grey(scene).into_raw(), views.scene_size());

@@ -1,26 +1,26 @@
 use image::RgbImage;
 
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
+use crate::{CondensationError, GlobalDescriptor, StateDescriptorTable, View, ViewGrid};
 
 /// Several features side by side as one.
 ///
 /// ```
-/// use wayfix_condensation::{Fft6Descriptor, Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, GlobalDescriptor};
-/// let all = JoinedDescriptor::new(vec![Box::new(MeanVarDescriptor), Box::new(Fft6Descriptor), Box::new(Hist6Descriptor::default())]);
+/// use wayfix_condensation::{Fft6Descriptor, DominantGraysDescriptor, ConcatenatedDescriptor, ColorMeanStdDescriptor, GlobalDescriptor};
+/// let all = ConcatenatedDescriptor::new(vec![Box::new(ColorMeanStdDescriptor), Box::new(Fft6Descriptor), Box::new(DominantGraysDescriptor::default())]);
 /// assert_eq!(all.n_components(), 18);
 /// ```
-pub struct JoinedDescriptor {
+pub struct ConcatenatedDescriptor {
     parts: Vec<Box<dyn GlobalDescriptor + Send>>,
 }
 
-impl JoinedDescriptor {
+impl ConcatenatedDescriptor {
     /// In that order.
     pub fn new(parts: Vec<Box<dyn GlobalDescriptor + Send>>) -> Self {
         Self { parts }
     }
 }
 
-impl GlobalDescriptor for JoinedDescriptor {
+impl GlobalDescriptor for ConcatenatedDescriptor {
     fn n_components(&self) -> usize {
         self.parts.iter().map(|part| part.n_components()).sum()
     }
@@ -34,8 +34,12 @@ impl GlobalDescriptor for JoinedDescriptor {
         }
     }
 
-    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
-        let mut joined = DescriptorTable::zeros(views.grid(), self.n_components());
+    fn extract_all(
+        &self,
+        scene: &RgbImage,
+        views: &ViewGrid,
+    ) -> Result<StateDescriptorTable, CondensationError> {
+        let mut joined = StateDescriptorTable::zeros(views.grid(), self.n_components());
         let mut begin = 0;
         for part in &self.parts {
             let table = part.extract_all(scene, views)?;

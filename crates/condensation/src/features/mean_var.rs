@@ -2,22 +2,22 @@ use image::RgbImage;
 
 use crate::features::columns::ColumnSums;
 use crate::features::picture::rgb_pixels;
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, View, ViewGrid};
+use crate::{CondensationError, GlobalDescriptor, StateDescriptorTable, View, ViewGrid};
 
 /// Mean and standard deviation of red, green and blue: $`[m_1, m_2, m_3, σ_1, σ_2, σ_3]`$. [Kasprzak & Szynkiewicz, Sec. 3.2]
 ///
 /// ```
-/// use wayfix_condensation::{MeanVarDescriptor, RgbImage, View, GlobalDescriptor};
+/// use wayfix_condensation::{ColorMeanStdDescriptor, RgbImage, View, GlobalDescriptor};
 /// let picture = RgbImage::from_raw(2, 1, vec![10, 7, 0, 30, 7, 0]).expect("3 bytes a pixel");
 /// let mut features = [0.0; 6];
-/// MeanVarDescriptor.extract(&View::whole(&picture)?, &mut features);
+/// ColorMeanStdDescriptor.extract(&View::whole(&picture)?, &mut features);
 /// assert_eq!(features, [20.0, 7.0, 0.0, 10.0, 0.0, 0.0]);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MeanVarDescriptor;
+pub struct ColorMeanStdDescriptor;
 
-impl GlobalDescriptor for MeanVarDescriptor {
+impl GlobalDescriptor for ColorMeanStdDescriptor {
     fn n_components(&self) -> usize {
         6
     }
@@ -32,9 +32,13 @@ impl GlobalDescriptor for MeanVarDescriptor {
         write(&sums, view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(
+        &self,
+        scene: &RgbImage,
+        views: &ViewGrid,
+    ) -> Result<StateDescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = DescriptorTable::zeros(views.grid(), 6);
+        let mut table = StateDescriptorTable::zeros(views.grid(), 6);
         let (view_width, view_height) = views.view_size();
         let (pixels, (width, _)) = (rgb_pixels(scene), views.scene_size());
         let pixel = |x, y| terms(pixels[y * width + x]);

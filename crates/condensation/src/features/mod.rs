@@ -14,10 +14,10 @@ mod view_grid;
 
 pub use dominance::DominantGrayCriterion;
 pub use fft6::Fft6Descriptor;
-pub use hist6::Hist6Descriptor;
-pub use joined_feature::JoinedDescriptor;
-pub use mean_var::MeanVarDescriptor;
+pub use hist6::DominantGraysDescriptor;
+pub use joined_feature::ConcatenatedDescriptor;
+pub use mean_var::ColorMeanStdDescriptor;
 pub use picture::{grey, mapped, shifted};
-pub use table::{DescriptorTable, GlobalDescriptor};
+pub use table::{GlobalDescriptor, StateDescriptorTable};
 pub use view::View;
 pub use view_grid::ViewGrid;

@@ -17,9 +17,13 @@ pub trait GlobalDescriptor: Sync {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.
-    fn extract_all(&self, scene: &RgbImage, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+    fn extract_all(
+        &self,
+        scene: &RgbImage,
+        views: &ViewGrid,
+    ) -> Result<StateDescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = DescriptorTable::zeros(views.grid(), self.n_components());
+        let mut table = StateDescriptorTable::zeros(views.grid(), self.n_components());
         for state in 0..views.grid().n_states() {
             self.extract(&views.view(scene, state)?, table.row_mut(state));
         }
@@ -29,12 +33,12 @@ pub trait GlobalDescriptor: Sync {
 
 /// The feature vector of every state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DescriptorTable {
+pub struct StateDescriptorTable {
     n_components: usize,
     values: Vec<f64>,
 }
 
-impl DescriptorTable {
+impl StateDescriptorTable {
     /// From vectors, one a state, of places that need not be views of one scene.
     ///
     /// # Errors

@@ -2,7 +2,7 @@ use image::RgbImage;
 
 use crate::{CondensationError, PositionGrid, View};
 
-/// The views of a scene: a window that moves in steps of so many pixels, one state a position. [Kasprzak & Szynkiewicz, Sec. 2.3]
+/// The views of a scene: a window that moves in steps of so many pixels, one state a position. [Kasprzak & Szynkiewicz, Sec. 2.3, Fig. 2]
 ///
 /// ```
 /// use wayfix_condensation::{DiscreteStateSpace, ViewGrid};

@@ -5,8 +5,8 @@ use crate::learning::noise::moments;
 use crate::learning::response::Response;
 use crate::learning::whitener::Whitener;
 use crate::{
-    AppearanceLearningParams, CondensationError, DescriptorTable, GlobalDescriptor, LightChange,
-    LikelihoodTail, N_DISTURBANCES, ViewSource,
+    AppearanceLearningParams, CondensationError, GlobalDescriptor, LightChange, LikelihoodTail,
+    N_DISTURBANCES, StateDescriptorTable, ViewSource,
 };
 
 /// How every state looks and how that varies: the density $`p(m \mid s)`$ of the measurement. [Kasprzak & Szynkiewicz, Sec. 3.1]
@@ -15,7 +15,7 @@ use crate::{
 /// m = M_s + A_s θ + v, \qquad θ ∼ N(0, Θ),\; v ∼ N(0, R_s)
 /// ```
 ///
-/// $`M_s`$ are the learned features. $`θ`$, the [`ViewDisturbance`](crate::ViewDisturbance), is the same in every view of a run: a shift of the camera and
+/// $`M_s`$ are the learned features. $`θ`$, the [`UnknownShiftAndLight`](crate::UnknownShiftAndLight), is the same in every view of a run: a shift of the camera and
 /// a change of the light. $`A_s`$ is how the features answer to it and $`R_s`$ what that leaves unexplained, both learned by shifting and
 /// relighting what was learned. For light far from that of learning there is one such model a *condition*, each around its own light.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct AppearanceModel {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Condition {
     pub(super) light: LightChange,
-    pub(super) features: DescriptorTable,
+    pub(super) features: StateDescriptorTable,
     pub(super) states: Vec<StateModel>,
 }
 
@@ -57,7 +57,7 @@ impl AppearanceModel {
         let learn = |light: &LightChange| Condition::learn(source, feature, light, params);
         Ok(Self {
             conditions: params.light_changes.iter().map(learn).collect::<Result<_, _>>()?,
-            prior: params.disturbance_sigmas.to_array().map(|sigma| sigma * sigma),
+            prior: params.shift_and_light_sigmas.to_array().map(|sigma| sigma * sigma),
             tail: params.likelihood_tail,
             n_components: feature.n_components(),
             half_spacing: source.half_spacing(),
@@ -70,7 +70,7 @@ impl AppearanceModel {
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when `share` is not positive.
-    pub fn from_spread(features: DescriptorTable, share: f64) -> Result<Self, CondensationError> {
+    pub fn from_spread(features: StateDescriptorTable, share: f64) -> Result<Self, CondensationError> {
         checked("share of the spread", share, share.is_finite() && share > 0.0, "finite and positive")?;
         let n_components = features.n_components();
         // A component that never varies weighs nothing, whatever its noise is said to be.
@@ -110,7 +110,7 @@ impl AppearanceModel {
     }
 
     /// The learned features in the light of a condition, if there is one of that number.
-    pub fn features(&self, condition: usize) -> Option<&DescriptorTable> {
+    pub fn features(&self, condition: usize) -> Option<&StateDescriptorTable> {
         self.conditions.get(condition).map(|condition| &condition.features)
     }
 

@@ -1,6 +1,6 @@
 use crate::LightChange;
 
-/// How many numbers describe a [`ViewDisturbance`].
+/// How many numbers describe a [`UnknownShiftAndLight`].
 pub const N_DISTURBANCES: usize = 5;
 
 /// What is the same in all views of a run and unknown before it: by how much views are shifted and the light differs.
@@ -9,7 +9,7 @@ pub const N_DISTURBANCES: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct ViewDisturbance {
+pub struct UnknownShiftAndLight {
     /// Shift to the right, in pixels.
     pub dx: f64,
     /// Shift down, in pixels.
@@ -22,7 +22,7 @@ pub struct ViewDisturbance {
     pub log_gamma: f64,
 }
 
-impl ViewDisturbance {
+impl UnknownShiftAndLight {
     /// In the order of the fields.
     pub fn to_array(self) -> [f64; N_DISTURBANCES] {
         [self.dx, self.dy, self.gain, self.offset, self.log_gamma]

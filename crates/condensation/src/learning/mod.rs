@@ -13,12 +13,12 @@ mod traverse;
 mod whitener;
 
 pub use appearance::AppearanceModel;
-pub use disturbance::{N_DISTURBANCES, ViewDisturbance};
+pub use disturbance::{N_DISTURBANCES, UnknownShiftAndLight};
 pub(crate) use likelihood::DisturbanceBelief;
 pub use likelihood::LikelihoodTail;
 pub use noise::NoiseCovarianceParams;
 pub use p_value::PValueStatistics;
 pub use params::AppearanceLearningParams;
-pub use source::{PictureViews, SceneViews, ViewSource};
-pub use transitions::MoveCounts;
-pub use traverse::{RouteTraverse, RouteTraverseParams};
+pub use source::{OneViewPerPicture, SceneViews, ViewSource};
+pub use transitions::TransitionCounts;
+pub use traverse::{RouteAppearanceModel, RouteAppearanceParams};

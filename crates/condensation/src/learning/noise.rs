@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::checked;
-use crate::{CondensationError, DescriptorTable};
+use crate::{CondensationError, StateDescriptorTable};
 
 /// How the covariance of noise is learned from few samples a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl NoiseCovarianceParams {
     /// Covariance of every state from residuals `residuals[sample][state]`.
     pub(super) fn covariances(
         &self,
-        features: &DescriptorTable,
+        features: &StateDescriptorTable,
         residuals: &[Vec<DVector<f64>>],
     ) -> Vec<DMatrix<f64>> {
         let (n, k) = (features.n_states(), features.n_components());
@@ -62,7 +62,7 @@ impl NoiseCovarianceParams {
 }
 
 /// Mean and variance of every component over the states.
-pub(super) fn moments(features: &DescriptorTable) -> Vec<(f64, f64)> {
+pub(super) fn moments(features: &StateDescriptorTable) -> Vec<(f64, f64)> {
     let n = features.n_states() as f64;
     let component = |i: usize| features.rows().map(move |row| row[i]);
     (0..features.n_components())

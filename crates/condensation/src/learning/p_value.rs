@@ -1,7 +1,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{check_size, check_state};
-use crate::{AppearanceModel, CondensationError, DescriptorTable};
+use crate::{AppearanceModel, CondensationError, StateDescriptorTable};
 
 /// Least, greatest and mean p-value over pairs, as in the paper's Tables 1 and 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl AppearanceModel {
         Ok(self.tail_probability(state, measurement))
     }
 
-    /// P-values of all pairs of different states (Table 1): how distinct the learned views are. None for a single state.
+    /// P-values of all pairs of different states [Kasprzak & Szynkiewicz, Table 1]: how distinct the learned views are. None for a single state.
     pub fn p_values_between_states(&self) -> Option<PValueStatistics> {
         let rows = || self.conditions[0].features.rows().enumerate();
         summarize(rows().flat_map(|(state, _)| {
@@ -38,11 +38,11 @@ impl AppearanceModel {
         }))
     }
 
-    /// P-values of each state's view in another scene (Table 2): how alike views of the same state are.
+    /// P-values of each state's view in another scene [Kasprzak & Szynkiewicz, Table 2]: how alike views of the same state are.
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the table is of other states or features.
-    pub fn p_values_of(&self, seen: &DescriptorTable) -> Result<PValueStatistics, CondensationError> {
+    pub fn p_values_of(&self, seen: &StateDescriptorTable) -> Result<PValueStatistics, CondensationError> {
         check_size("table of features", self.n_states(), seen.n_states())?;
         check_size("feature vector", self.n_components, seen.n_components())?;
         let each = seen.rows().enumerate().map(|(state, row)| self.tail_probability(state, row));

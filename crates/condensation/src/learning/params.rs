@@ -1,5 +1,5 @@
 use crate::error::checked;
-use crate::{CondensationError, LightChange, LikelihoodTail, NoiseCovarianceParams, ViewDisturbance};
+use crate::{CondensationError, LightChange, LikelihoodTail, NoiseCovarianceParams, UnknownShiftAndLight};
 
 /// How appearance is learned. None of it depends on the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,7 +7,7 @@ use crate::{CondensationError, LightChange, LikelihoodTail, NoiseCovarianceParam
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct AppearanceLearningParams {
     /// Standard deviations of the disturbance around each condition.
-    pub disturbance_sigmas: ViewDisturbance,
+    pub shift_and_light_sigmas: UnknownShiftAndLight,
     /// The lights of the conditions, as they differ from that of learning.
     pub light_changes: Vec<LightChange>,
     /// Noise that no disturbance explains.
@@ -24,7 +24,13 @@ impl AppearanceLearningParams {
     /// but not exactly of the form gain, offset, gamma, so a tenth is allowed for.
     pub fn normalized() -> Self {
         Self {
-            disturbance_sigmas: ViewDisturbance { dx: 2.4, dy: 2.4, gain: 0.1, offset: 8.0, log_gamma: 0.1 },
+            shift_and_light_sigmas: UnknownShiftAndLight {
+                dx: 2.4,
+                dy: 2.4,
+                gain: 0.1,
+                offset: 8.0,
+                log_gamma: 0.1,
+            },
             light_changes: vec![LightChange::SAME],
             noise_covariance: NoiseCovarianceParams::default(),
             likelihood_tail: LikelihoodTail::default(),
@@ -45,7 +51,7 @@ impl AppearanceLearningParams {
         let lights =
             gammas.flat_map(|gamma| [0.6, 0.85, 1.2].map(|gain| LightChange { gain, offset: 0.0, gamma }));
         Self {
-            disturbance_sigmas: ViewDisturbance {
+            shift_and_light_sigmas: UnknownShiftAndLight {
                 dx: 2.4,
                 dy: 2.4,
                 gain: 0.12,
@@ -58,17 +64,23 @@ impl AppearanceLearningParams {
     }
 
     /// The published likelihood: a Gaussian of the weighted distance, $`e^{-\frac{1}{2} \sum_i w_i (m_i - m_i(s))^2}`$, whose weights are one over the variances of the
-    /// features over the states; no disturbance is known. [Kasprzak & Szynkiewicz, 2.3]
+    /// features over the states; no disturbance is known. [Kasprzak & Szynkiewicz, Sec. 2.3]
     ///
     /// ```
     /// use wayfix_condensation::{AppearanceLearningParams, LikelihoodTail};
     /// let published = AppearanceLearningParams::as_published();
     /// assert_eq!(published.likelihood_tail, LikelihoodTail::Gaussian);
-    /// assert!(published.disturbance_sigmas.to_array().iter().all(|sigma| *sigma == 0.0));
+    /// assert!(published.shift_and_light_sigmas.to_array().iter().all(|sigma| *sigma == 0.0));
     /// ```
     pub fn as_published() -> Self {
         Self {
-            disturbance_sigmas: ViewDisturbance { dx: 0.0, dy: 0.0, gain: 0.0, offset: 0.0, log_gamma: 0.0 },
+            shift_and_light_sigmas: UnknownShiftAndLight {
+                dx: 0.0,
+                dy: 0.0,
+                gain: 0.0,
+                offset: 0.0,
+                log_gamma: 0.0,
+            },
             light_changes: vec![LightChange::SAME],
             noise_covariance: NoiseCovarianceParams { pooled_share: 1.0, min_variance_share: 1.0 },
             likelihood_tail: LikelihoodTail::Gaussian,
@@ -76,7 +88,7 @@ impl AppearanceLearningParams {
     }
 
     pub(super) fn check(&self) -> Result<(), CondensationError> {
-        for sigma in self.disturbance_sigmas.to_array() {
+        for sigma in self.shift_and_light_sigmas.to_array() {
             let valid = sigma.is_finite() && sigma >= 0.0;
             checked("sigma of the disturbance", sigma, valid, "finite and not negative")?;
         }

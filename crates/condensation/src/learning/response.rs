@@ -2,7 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{CondensationError, DescriptorTable, GlobalDescriptor, LightChange, N_DISTURBANCES, ViewSource};
+use crate::{
+    CondensationError, GlobalDescriptor, LightChange, N_DISTURBANCES, StateDescriptorTable, ViewSource,
+};
 
 /// Pixels of a shift for the derivative.
 const SHIFT: i32 = 4;
@@ -28,7 +30,7 @@ impl Response {
         source: &dyn ViewSource,
         feature: &dyn GlobalDescriptor,
         light: &LightChange,
-        features: &DescriptorTable,
+        features: &StateDescriptorTable,
     ) -> Result<Self, CondensationError> {
         let shifted = |dx, dy| source.features(feature, (dx, dy), light);
         let relit = |light: LightChange| source.features(feature, (0, 0), &light);
@@ -72,6 +74,6 @@ impl Response {
     }
 }
 
-fn difference(plus: &DescriptorTable, minus: &DescriptorTable, state: usize) -> DVector<f64> {
+fn difference(plus: &StateDescriptorTable, minus: &StateDescriptorTable, state: usize) -> DVector<f64> {
     DVector::from_row_slice(plus.row(state)) - DVector::from_row_slice(minus.row(state))
 }

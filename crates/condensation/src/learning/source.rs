@@ -2,7 +2,8 @@ use image::RgbImage;
 
 use crate::features::shifted;
 use crate::{
-    CondensationError, DescriptorTable, DiscreteStateSpace, GlobalDescriptor, LightChange, View, ViewGrid,
+    CondensationError, DiscreteStateSpace, GlobalDescriptor, LightChange, StateDescriptorTable, View,
+    ViewGrid,
 };
 
 /// Where learned views come from, and how they would look shifted and in another light.
@@ -19,7 +20,7 @@ pub trait ViewSource {
         feature: &dyn GlobalDescriptor,
         shift: (i32, i32),
         light: &LightChange,
-    ) -> Result<DescriptorTable, CondensationError>;
+    ) -> Result<StateDescriptorTable, CondensationError>;
 
     /// By how much the view of `state` really moves when asked to by `shift`: less where the scene ends.
     fn displacement(&self, state: usize, shift: (i32, i32)) -> (f64, f64);
@@ -59,7 +60,7 @@ impl ViewSource for SceneViews<'_> {
         feature: &dyn GlobalDescriptor,
         (dx, dy): (i32, i32),
         light: &LightChange,
-    ) -> Result<DescriptorTable, CondensationError> {
+    ) -> Result<StateDescriptorTable, CondensationError> {
         let views = self.views.moved(dx, dy);
         if *light == LightChange::SAME {
             return feature.extract_all(self.scene, &views);
@@ -82,11 +83,11 @@ impl ViewSource for SceneViews<'_> {
 
 /// One picture a state: places along a route, say.
 #[derive(Clone, Copy, Debug)]
-pub struct PictureViews<'a> {
+pub struct OneViewPerPicture<'a> {
     pictures: &'a [RgbImage],
 }
 
-impl<'a> PictureViews<'a> {
+impl<'a> OneViewPerPicture<'a> {
     /// One picture a state; they need not be of one size.
     ///
     /// # Errors
@@ -100,7 +101,7 @@ impl<'a> PictureViews<'a> {
     }
 }
 
-impl ViewSource for PictureViews<'_> {
+impl ViewSource for OneViewPerPicture<'_> {
     fn n_states(&self) -> usize {
         self.pictures.len()
     }
@@ -110,14 +111,14 @@ impl ViewSource for PictureViews<'_> {
         feature: &dyn GlobalDescriptor,
         (dx, dy): (i32, i32),
         light: &LightChange,
-    ) -> Result<DescriptorTable, CondensationError> {
+    ) -> Result<StateDescriptorTable, CondensationError> {
         let mut rows = Vec::with_capacity(self.pictures.len());
         for picture in self.pictures {
             let mut row = vec![0.0; feature.n_components()];
             feature.extract(&View::whole(&shifted(&light.apply(picture)?, dx, dy))?, &mut row);
             rows.push(row);
         }
-        DescriptorTable::from_rows(&rows)
+        StateDescriptorTable::from_rows(&rows)
     }
 
     fn displacement(&self, _: usize, (dx, dy): (i32, i32)) -> (f64, f64) {

@@ -6,10 +6,10 @@ use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 /// Where moves led: counts from which transition probabilities are learned. [Kasprzak & Szynkiewicz, Sec. 2.2]
 ///
 /// ```
-/// use wayfix_condensation::{PositionGrid, GridMove, MoveCounts, TransitionModel};
+/// use wayfix_condensation::{PositionGrid, GridMove, TransitionCounts, TransitionModel};
 /// let grid = PositionGrid::new(3, 1)?;
 /// let right = GridMove { dx: 1, dy: 0 };
-/// let mut log = MoveCounts::new(&grid);
+/// let mut log = TransitionCounts::new(&grid);
 /// for to in [1, 1, 0, 1] {
 ///     log.record(0, right, to)?;
 /// }
@@ -20,12 +20,12 @@ use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MoveCounts<'a, S: DiscreteStateSpace> {
+pub struct TransitionCounts<'a, S: DiscreteStateSpace> {
     space: &'a S,
     counts: Vec<BTreeMap<(usize, usize), u32>>, // by action: from, to
 }
 
-impl<'a, S: DiscreteStateSpace> MoveCounts<'a, S>
+impl<'a, S: DiscreteStateSpace> TransitionCounts<'a, S>
 where
     S::Action: PartialEq,
 {

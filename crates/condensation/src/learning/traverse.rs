@@ -4,12 +4,12 @@ use wayfix_estimation_traits::LogWeight;
 use crate::error::{check_size, checked};
 use crate::learning::noise::moments;
 use crate::learning::whitener::Whitener;
-use crate::{CondensationError, DescriptorTable, LikelihoodTail};
+use crate::{CondensationError, LikelihoodTail, StateDescriptorTable};
 
 /// What is assumed of a traverse. None of it depends on the route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct RouteTraverseParams {
+pub struct RouteAppearanceParams {
     /// Places so far apart count as the same, so that how their views differ is noise.
     pub same_place_tolerance: usize,
     /// Least variance of a component, as a share of its variance over the places.
@@ -18,7 +18,7 @@ pub struct RouteTraverseParams {
     pub likelihood_tail: LikelihoodTail,
 }
 
-impl Default for RouteTraverseParams {
+impl Default for RouteAppearanceParams {
     /// Two places, as is usual for frames of video; the floor of [`NoiseCovarianceParams`](crate::NoiseCovarianceParams).
     fn default() -> Self {
         Self { same_place_tolerance: 2, min_variance_share: 3e-4, likelihood_tail: LikelihoodTail::default() }
@@ -38,32 +38,32 @@ impl Default for RouteTraverseParams {
 /// up to the first $`ρ_k \le 0`$, and the views of $`τ`$ places count as one: log-likelihoods are divided by $`τ`$. [Sokal 1997]
 ///
 /// ```
-/// use wayfix_condensation::{DescriptorTable, RouteTraverse, RouteTraverseParams};
+/// use wayfix_condensation::{StateDescriptorTable, RouteAppearanceModel, RouteAppearanceParams};
 /// let place = |k: usize| (0.3 * k as f64).sin();
-/// let learned = DescriptorTable::from_rows(&(0..40).map(|k| vec![place(k), place(2 * k)]).collect::<Vec<_>>())?;
-/// let traverse = RouteTraverse::learn(&learned, &RouteTraverseParams::default())?;
+/// let learned = StateDescriptorTable::from_rows(&(0..40).map(|k| vec![place(k), place(2 * k)]).collect::<Vec<_>>())?;
+/// let traverse = RouteAppearanceModel::learn(&learned, &RouteAppearanceParams::default())?;
 /// let log_likelihoods = traverse.log_likelihoods(&[place(7), place(14)])?;
 /// assert!(log_likelihoods.iter().all(|l| *l <= log_likelihoods[7]));
 /// assert!(traverse.log_likelihoods(&[f64::NAN, 0.0]).is_err());
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct RouteTraverse {
+pub struct RouteAppearanceModel {
     places: Vec<Vec<f64>>, // whitened
     whitener: Whitener,
     correlation_length: f64,
     tail: LikelihoodTail,
 }
 
-impl RouteTraverse {
+impl RouteAppearanceModel {
     /// Learns the features of places in the order in which they were passed.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`], [`CondensationError::Empty`] when there are no two places that far apart,
     /// [`CondensationError::Gaussian`] when the features are too large for their noise.
     pub fn learn(
-        features: &DescriptorTable,
-        params: &RouteTraverseParams,
+        features: &StateDescriptorTable,
+        params: &RouteAppearanceParams,
     ) -> Result<Self, CondensationError> {
         let lag = checked(
             "same_place_tolerance",
@@ -177,27 +177,28 @@ mod tests {
 
     #[test]
     fn what_cannot_be_learned_from_is_refused() {
-        let two = DescriptorTable::from_rows(&[vec![1.0], vec![2.0]]).unwrap();
-        let learn = |params: RouteTraverseParams| RouteTraverse::learn(&two, &params);
-        assert!(matches!(learn(RouteTraverseParams::default()), Err(CondensationError::Empty { .. })));
-        let params = RouteTraverseParams { same_place_tolerance: 0, ..RouteTraverseParams::default() };
+        let two = StateDescriptorTable::from_rows(&[vec![1.0], vec![2.0]]).unwrap();
+        let learn = |params: RouteAppearanceParams| RouteAppearanceModel::learn(&two, &params);
+        assert!(matches!(learn(RouteAppearanceParams::default()), Err(CondensationError::Empty { .. })));
+        let params = RouteAppearanceParams { same_place_tolerance: 0, ..RouteAppearanceParams::default() };
         assert!(matches!(learn(params), Err(CondensationError::Parameter { .. })));
-        let params = RouteTraverseParams {
+        let params = RouteAppearanceParams {
             same_place_tolerance: 1,
             min_variance_share: f64::NAN,
-            ..RouteTraverseParams::default()
+            ..RouteAppearanceParams::default()
         };
         assert!(matches!(learn(params), Err(CondensationError::Parameter { .. })));
         let traverse =
-            learn(RouteTraverseParams { same_place_tolerance: 1, ..RouteTraverseParams::default() }).unwrap();
+            learn(RouteAppearanceParams { same_place_tolerance: 1, ..RouteAppearanceParams::default() })
+                .unwrap();
         assert!(matches!(traverse.log_likelihoods(&[1.0, 2.0]), Err(CondensationError::Dimension { .. })));
     }
 
     /// Places that all look the same tell nothing, and break nothing.
     #[test]
     fn a_route_without_features_leaves_all_places_equally_likely() {
-        let grey = DescriptorTable::from_rows(&vec![vec![7.0, 0.0]; 9]).unwrap();
-        let traverse = RouteTraverse::learn(&grey, &RouteTraverseParams::default()).unwrap();
+        let grey = StateDescriptorTable::from_rows(&vec![vec![7.0, 0.0]; 9]).unwrap();
+        let traverse = RouteAppearanceModel::learn(&grey, &RouteAppearanceParams::default()).unwrap();
         let log_likelihoods = traverse.log_likelihoods(&[7.0, 0.0]).unwrap();
         assert!(log_likelihoods.iter().all(|l| l.is_finite() && *l == log_likelihoods[0]));
     }

@@ -9,7 +9,7 @@ use crate::learning::DisturbanceBelief;
 use crate::navigation::moment_transition::MomentTransition;
 use crate::{
     AppearanceModel, CondensationError, DiscreteFilter, LightChange, MeasurementOutcome, MostProbableState,
-    TransitionModel, ViewDisturbance,
+    TransitionModel, UnknownShiftAndLight,
 };
 
 /// What a localizer assumes of the run.
@@ -20,33 +20,33 @@ pub struct ViewLocalizerParams {
     /// Share of the belief that goes everywhere in a step: the robot carried off, a place where the model is wrong.
     pub kidnapping_probability: f64,
     /// How much the disturbance may drift in a step, as a share of its prior variance.
-    pub disturbance_drift: f64,
+    pub shift_and_light_drift: f64,
 }
 
 impl ViewLocalizerParams {
     /// The published filter: nobody moves the robot, and nothing drifts.
     pub fn as_published() -> Self {
-        Self { kidnapping_probability: 0.0, disturbance_drift: 0.0 }
+        Self { kidnapping_probability: 0.0, shift_and_light_drift: 0.0 }
     }
 }
 
 impl Default for ViewLocalizerParams {
     /// Carried off once in a thousand steps; a disturbance that takes as many to be forgotten.
     fn default() -> Self {
-        Self { kidnapping_probability: 1e-3, disturbance_drift: 1e-3 }
+        Self { kidnapping_probability: 1e-3, shift_and_light_drift: 1e-3 }
     }
 }
 
 /// Place, light and shift estimated together from global features.
 ///
 /// A discrete Bayes filter over the product of places and conditions, in which every state carries its own Gaussian belief over the
-/// [`ViewDisturbance`]: how the views seen on the way to this state fit what was learned of them tells the light. At first every place
+/// [`UnknownShiftAndLight`]: how the views seen on the way to this state fit what was learned of them tells the light. At first every place
 /// explains what is seen by a light of its own; the views that follow agree with one of them only.
 ///
 /// ```
 /// use std::sync::Arc;
-/// use wayfix_condensation::{AppearanceModel, DescriptorTable, ViewLocalizer, ViewLocalizerParams};
-/// let learned = DescriptorTable::from_rows(&[vec![10.0], vec![20.0], vec![30.0]])?;
+/// use wayfix_condensation::{AppearanceModel, StateDescriptorTable, ViewLocalizer, ViewLocalizerParams};
+/// let learned = StateDescriptorTable::from_rows(&[vec![10.0], vec![20.0], vec![30.0]])?;
 /// let appearance = Arc::new(AppearanceModel::from_spread(learned, 0.1)?);
 /// let mut localizer = ViewLocalizer::new(appearance, ViewLocalizerParams::default())?;
 /// localizer.update(&[21.0])?.evidence().expect("possible");
@@ -73,7 +73,7 @@ impl ViewLocalizer {
         params: ViewLocalizerParams,
     ) -> Result<Self, CondensationError> {
         probability("kidnapping_probability", params.kidnapping_probability)?;
-        probability("disturbance_drift", params.disturbance_drift)?;
+        probability("shift_and_light_drift", params.shift_and_light_drift)?;
         let n_places = appearance.n_states();
         let n = n_places * appearance.n_conditions();
         Ok(Self {
@@ -97,7 +97,7 @@ impl ViewLocalizer {
         for (belief, disturbances) in conditions {
             MomentTransition { transition, leak: self.params.kidnapping_probability }
                 .apply(belief, disturbances);
-            disturbances.iter_mut().for_each(|d| self.appearance.widen(d, self.params.disturbance_drift));
+            disturbances.iter_mut().for_each(|d| self.appearance.widen(d, self.params.shift_and_light_drift));
         }
         self.filter = DiscreteFilter::from_prior(next)?;
         self.sum_places();
@@ -154,10 +154,10 @@ impl ViewLocalizer {
     }
 
     /// The light and the shift where belief is largest.
-    pub fn disturbance(&self) -> (LightChange, ViewDisturbance) {
+    pub fn disturbance(&self) -> (LightChange, UnknownShiftAndLight) {
         let best = self.filter.best().state;
         let light = self.appearance.light(best / self.places.len()).unwrap_or(LightChange::SAME);
-        let disturbance = ViewDisturbance::from_array(self.disturbances[best].mean);
+        let disturbance = UnknownShiftAndLight::from_array(self.disturbances[best].mean);
         (disturbance.applied_to(light), disturbance)
     }
 

@@ -5,7 +5,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    DescriptorTable, DiscreteStateSpace, GridMove, NavigationEnvironment, PositionGrid, RgbImage,
+    DiscreteStateSpace, GridMove, NavigationEnvironment, PositionGrid, RgbImage, StateDescriptorTable,
 };
 
 /// Soft blobs of colour on a gradient: smooth as photographs are, and different everywhere.
@@ -34,7 +34,7 @@ pub(crate) fn scene(width: usize, height: usize, seed: u64) -> RgbImage {
 /// A robot on a grid of views.
 pub(crate) struct Drive {
     pub(crate) grid: PositionGrid,
-    pub(crate) seen: DescriptorTable,
+    pub(crate) seen: StateDescriptorTable,
     pub(crate) at: usize,
     /// After so many looks the robot is put elsewhere.
     pub(crate) kidnapped: Option<(usize, usize)>,

@@ -3,6 +3,7 @@ use nalgebra::DefaultAllocator;
 use super::{
     LawViolation,
     check::{distance, extent, rounding, within},
+    jacobian::agrees,
     tangents::{LENGTHS, tangents},
 };
 use crate::{LieGroup, StateAlloc, Tangent, to_f64};
@@ -80,6 +81,8 @@ where
             format!("s = {s}, t = {t}, tangent {:?}", xi.as_slice())
         })?;
     }
+    let law = "log_jacobian is the derivative of log(g exp δ) (law 6)";
+    agrees(law, &whole.log_jacobian(), G::log, &whole, 10.0, case)?;
     let length = to_f64(xi.norm());
     if length < 0.1 {
         // A first-order error is as long as ξ; the second-order one stays below ten times its square.

@@ -5,7 +5,7 @@ use super::{align, rms_distance};
 
 /// An estimated pose beside the true one.
 #[derive(Clone, Copy, Debug)]
-pub struct TrajectorySample {
+pub struct PoseWithTruth {
     /// The estimate.
     pub estimate: Pose2<f64>,
     /// Its covariance in the body frame, `(x, y, θ)`.
@@ -14,7 +14,7 @@ pub struct TrajectorySample {
     pub truth: Pose2<f64>,
 }
 
-impl TrajectorySample {
+impl PoseWithTruth {
     /// The truth seen from the estimate, `(x, y, θ)` in the estimated body frame.
     pub fn error(&self) -> Vector3<f64> {
         self.estimate.local(&self.truth)
@@ -62,11 +62,11 @@ pub struct TrajectoryErrors {
 }
 
 /// Errors over all samples; `None` without samples.
-pub fn trajectory_errors(samples: &[TrajectorySample]) -> Option<TrajectoryErrors> {
+pub fn trajectory_errors(samples: &[PoseWithTruth]) -> Option<TrajectoryErrors> {
     let positions = samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation));
     let identity = Pose2::new(0.0, 0.0, 0.0);
     let squared_turns = samples.iter().map(|sample| sample.heading_error().powi(2));
-    let nees: Vec<f64> = samples.iter().filter_map(TrajectorySample::nees).collect();
+    let nees: Vec<f64> = samples.iter().filter_map(PoseWithTruth::nees).collect();
     Some(TrajectoryErrors {
         ate_rmse: rms_distance(positions.clone(), &identity)?,
         ate_aligned_rmse: rms_distance(positions.clone(), &align(positions))?,
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn errors_of_a_path_that_is_shifted_and_turned_by_known_amounts() {
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.04, 0.04, 0.01));
-        let sample = |x: f64| TrajectorySample {
+        let sample = |x: f64| PoseWithTruth {
             estimate: Pose2::new(x, 0.3, 3.1),
             covariance,
             truth: Pose2::new(x, 0.0, -3.1),
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn a_pose_known_exactly_has_no_nees_and_no_pose_no_errors() {
         let pose = Pose2::new(1.0, 2.0, 3.0);
-        let sample = TrajectorySample { estimate: pose, covariance: Matrix3::zeros(), truth: pose };
+        let sample = PoseWithTruth { estimate: pose, covariance: Matrix3::zeros(), truth: pose };
         assert_eq!(sample.nees(), None);
         assert_eq!(trajectory_errors(&[sample]).unwrap().nees_mean, None);
         assert_eq!(trajectory_errors(&[]), None);

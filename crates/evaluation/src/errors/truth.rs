@@ -2,7 +2,7 @@ use nalgebra::Matrix3;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::{TrajectorySample, truth_noise::truth_noise};
+use super::{PoseWithTruth, truth_noise::truth_noise};
 
 /// Reference poses over time: true ones, or estimates of another program.
 #[derive(Clone, Debug, Default)]
@@ -68,9 +68,9 @@ impl ReferencePath {
         stamp: Stamp,
         estimate: Pose2<f64>,
         covariance: &Matrix3<f64>,
-    ) -> Option<TrajectorySample> {
+    ) -> Option<PoseWithTruth> {
         let truth = self.at(stamp)?;
-        Some(TrajectorySample { estimate, covariance: covariance + self.noise, truth })
+        Some(PoseWithTruth { estimate, covariance: covariance + self.noise, truth })
     }
 
     /// Last stamp with a true pose.

@@ -15,10 +15,12 @@
 //! picture: the lowest and highest value of every pixel column remain.
 
 mod consistency;
+mod decimated;
 mod ellipses;
 mod error;
 mod error_plot;
 mod film_strip;
+mod histogram;
 mod lines;
 mod map;
 mod picture;
@@ -27,10 +29,12 @@ mod svg;
 mod times;
 
 pub use consistency::ConsistencyPlot;
+pub use decimated::Decimated;
 pub use ellipses::{CovarianceEllipsesPlot, NamedEllipse};
 pub use error::PlotError;
 pub use error_plot::{PoseErrorPlot, PoseErrorSample};
 pub use film_strip::{FilmStrip, FilmStripFrame};
+pub use histogram::histogram;
 pub use lines::{LinePlot, PlotBand, PlotSeries};
 pub use map::{EstimatedLandmark, MapPlot};
 pub use picture::SvgPlot;

@@ -32,6 +32,8 @@ pub struct Metric {
     pub peer: Option<PeerValue>,
     /// Source of the bounds: an argument, paper or peer.
     pub bound_source: Option<String>,
+    /// Whether the bound is wanted and not reached yet: `bound_source` states it, and it does not count.
+    pub open: bool,
 }
 
 /// The 95 % interval of a mean.
@@ -112,12 +114,14 @@ struct StoredMetric {
     peer: Option<PeerValue>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     bound_source: Option<String>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    open: bool,
 }
 
 impl From<Metric> for StoredMetric {
     fn from(metric: Metric) -> Self {
         let pass = metric.passes();
-        let Metric { name, value, unit, spread, low, high, paper, peer, bound_source } = metric;
+        let Metric { name, value, unit, spread, low, high, paper, peer, bound_source, open } = metric;
         let spread = spread.filter(|spread| spread.half_width.is_finite());
         let peer = peer.filter(|peer| peer.value.is_finite());
         Self {
@@ -131,15 +135,27 @@ impl From<Metric> for StoredMetric {
             spread,
             peer,
             bound_source,
+            open,
         }
     }
 }
 
 impl From<StoredMetric> for Metric {
     fn from(stored: StoredMetric) -> Self {
-        let StoredMetric { name, value, unit, low, high, paper, pass: _, spread, peer, bound_source } =
+        let StoredMetric { name, value, unit, low, high, paper, pass: _, spread, peer, bound_source, open } =
             stored;
-        Self { name, value: value.unwrap_or(f64::NAN), unit, spread, low, high, paper, peer, bound_source }
+        Self {
+            name,
+            value: value.unwrap_or(f64::NAN),
+            unit,
+            spread,
+            low,
+            high,
+            paper,
+            peer,
+            bound_source,
+            open,
+        }
     }
 }
 

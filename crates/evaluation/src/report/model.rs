@@ -7,15 +7,15 @@ use crate::plot::SvgPlot;
 
 /// All suites of one call, with the data needed to repeat it.
 /// ```
-/// use wayfix_evaluation::report::{Metric, Report, ReportRun, ReportSuite};
+/// use wayfix_evaluation::report::{Metric, FullReport, ReportRun, ReportSuite};
 /// let run = ReportRun { name: "robot 1".to_owned(), metrics: vec![Metric::new("nees_mean", 2.9, "").at_most(4.0)], ..ReportRun::default() };
-/// let report = Report { suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }], seed: 1, ..Report::default() };
+/// let report = FullReport { suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }], seed: 1, ..FullReport::default() };
 /// assert!(report.tally().all_pass());
 /// assert!(serde_json::to_string(&report)?.contains(r#""pass":true"#));
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct FullReport {
     /// In the order in which they ran.
     pub suites: Vec<ReportSuite>,
     /// Seed of every generator.
@@ -24,6 +24,9 @@ pub struct Report {
     pub commit: Option<String>,
     /// The machine.
     pub machine: MachineInfo,
+    /// Runs that are not finished, as `suite / run`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pending: Vec<String>,
 }
 
 /// Runs that belong together: `slam`, `color`.
@@ -82,7 +85,7 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    fn report() -> Report {
+    fn report() -> FullReport {
         let run = ReportRun {
             name: "utias-7-1".to_owned(),
             metrics: vec![
@@ -99,10 +102,10 @@ mod tests {
             }],
             ..ReportRun::default()
         };
-        Report {
+        FullReport {
             suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }],
             seed: 7,
-            ..Report::default()
+            ..FullReport::default()
         }
     }
 
@@ -130,9 +133,9 @@ mod tests {
     #[test]
     fn json_reads_back() {
         let text = serde_json::to_string(&report()).unwrap();
-        let read: Report = serde_json::from_str(&text).unwrap();
+        let read: FullReport = serde_json::from_str(&text).unwrap();
         assert_eq!(serde_json::to_string(&read).unwrap(), text);
         let bare = r#"{"suites":[{"name":"s","runs":[{"name":"r","metrics":[],"seconds":0.1}]}],"seed":0,"commit":"abc","machine":{}}"#;
-        assert_eq!(serde_json::from_str::<Report>(bare).unwrap().commit.as_deref(), Some("abc"));
+        assert_eq!(serde_json::from_str::<FullReport>(bare).unwrap().commit.as_deref(), Some("abc"));
     }
 }

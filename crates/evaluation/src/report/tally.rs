@@ -1,7 +1,7 @@
 use std::iter::Sum;
 use std::ops::Add;
 
-use super::{Metric, Report, ReportRun, ReportSuite};
+use super::{FullReport, Metric, ReportRun, ReportSuite};
 
 /// Number of figures that pass and fail.
 ///
@@ -21,7 +21,7 @@ impl PassFailCount {
     }
 }
 
-impl Report {
+impl FullReport {
     /// The tally of all suites.
     pub fn tally(&self) -> PassFailCount {
         self.suites.iter().map(ReportSuite::tally).sum()
@@ -82,6 +82,6 @@ mod tests {
         assert_eq!(run.tally(), PassFailCount { passed: 1, failed: 2 });
         let broken = ReportRun { error: Some("no record".to_owned()), ..ReportRun::default() };
         assert_eq!(broken.tally(), PassFailCount { passed: 0, failed: 1 });
-        assert!(!Report::default().tally().all_pass(), "nothing judged is not a pass");
+        assert!(!FullReport::default().tally().all_pass(), "nothing judged is not a pass");
     }
 }

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{Report, html};
+use super::{FullReport, html};
 
 /// Errors of writing a report.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +20,7 @@ pub enum ReportError {
     Json(#[from] serde_json::Error),
 }
 
-impl Report {
+impl FullReport {
     /// Writes `report.json` and `index.html` to `folder`, which is created if missing.
     /// # Errors
     /// Returns an error if the folder or a file cannot be written.
@@ -33,8 +33,18 @@ impl Report {
         let json = serde_json::to_string_pretty(self)? + "\n";
         for (name, text) in [("report.json", json), ("index.html", html::render(self))] {
             let path = folder.join(name);
-            std::fs::write(&path, text).map_err(refused(&path))?;
+            replace_file(&path, text).map_err(refused(&path))?;
         }
         Ok(())
     }
+}
+
+/// Writes a file beside `path` and puts it in its place: a reader never sees half of it.
+/// # Errors
+/// Returns the error of the file system.
+pub fn replace_file(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let mut unfinished = path.as_os_str().to_owned();
+    unfinished.push(".tmp");
+    std::fs::write(&unfinished, content)?;
+    std::fs::rename(unfinished, path)
 }

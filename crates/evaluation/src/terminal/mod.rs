@@ -2,6 +2,8 @@
 
 mod output;
 mod progress;
+mod stopwatch;
 
 pub use output::{print, print_message};
 pub use progress::{bar, counter};
+pub use stopwatch::Stopwatch;

@@ -9,7 +9,7 @@ pub fn bar(length: usize, what: &str) -> ProgressBar {
 
 /// A counter on standard error for work of unknown length.
 pub fn counter(what: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg:24} {pos} frames, {per_sec}")
+    let style = ProgressStyle::with_template("{msg:24} {pos}, {per_sec}")
         .unwrap_or_else(|_| ProgressStyle::default_spinner());
     ProgressBar::no_length().with_style(style).with_message(what.to_owned())
 }

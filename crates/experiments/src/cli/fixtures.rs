@@ -2,9 +2,8 @@ use std::{fs, path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
 
-use crate::fixtures;
+use crate::{color::TrainingHalls, fixtures};
 use wayfix_evaluation::terminal::print;
-use wayfix_systems::color::priors;
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
@@ -35,7 +34,7 @@ pub(super) fn main(command: Command) -> Result<ExitCode> {
         Command::Build(arguments) => (fixtures::build(&arguments.folder)?, "wrote"),
         Command::Check(arguments) => (fixtures::check(&arguments.folder)?, "same"),
         Command::Priors { file, lights } => {
-            let text = serde_json::to_string(&priors::learn_from_simulation(*lights)?)? + "\n";
+            let text = serde_json::to_string(&TrainingHalls::default().learn_priors(*lights)?)? + "\n";
             fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
             return Ok(ExitCode::SUCCESS);
         }

@@ -7,7 +7,7 @@ use std::{
 use anyhow::{Context, Result};
 
 use super::regress::show;
-use crate::regress::{ShardResults, assemble, join};
+use crate::regress::{CampaignShard, ShardResults, assemble, join};
 
 /// Merge the shares of a regression that several machines have run into one report.
 ///
@@ -29,13 +29,14 @@ pub(super) struct Arguments {
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let parts = arguments.shares.iter().map(|share| Ok((share.clone(), ShardResults::read(share)?)));
     let (options, done) = join(parts.collect::<Result<_>>()?, &arguments.fixtures, &arguments.out)?;
-    let report = assemble(&options, &done)?;
+    let report = assemble(&options, CampaignShard::WHOLE, &done)?;
     fs::create_dir_all(&arguments.out)
         .with_context(|| format!("cannot create {}", arguments.out.display()))?;
     for log in report.suites.iter().flat_map(|suite| &suite.runs).filter_map(|run| run.log.as_deref()) {
         copy_estimates(log, &arguments.shares, &arguments.out)?;
     }
-    show(&report, &arguments.out)
+    report.write(&arguments.out)?;
+    show(&report, &arguments.out, true)
 }
 
 /// Copies a log from whichever share has it.

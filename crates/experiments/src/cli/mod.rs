@@ -3,6 +3,7 @@
 mod fixtures;
 mod merge_reports;
 mod regress;
+mod session;
 
 use std::process::ExitCode;
 

@@ -3,21 +3,39 @@ use std::{
     process::ExitCode,
 };
 
-use anyhow::{Context, Result};
-use wayfix_evaluation::terminal::{self, print};
+use anyhow::{Context, Result, ensure};
+use wayfix_evaluation::{
+    report::{FullReport, failures, table, table::TableStyle},
+    terminal::print,
+};
 
-use crate::regress::{CampaignShard, RegressOptions, ShardResults, assemble, cells, run_shard, suites};
-use wayfix_evaluation::report::{Report, table, table::TableStyle};
+use super::session::RegressSession;
+use crate::regress::{
+    CampaignShard, RegressOptions, RunCosts, RunSelection, ShardResults, calibration_seconds, cells,
+    run_shard,
+};
 
-/// Run every system on the stored logs, and on public recordings if available, and compare the figures with their bounds.
+/// Run every system on the stored logs, and compare the figures with their bounds.
 ///
 /// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). The exit code is 0 if every
-/// figure is within its bounds, else 1. OUT/index.html shows trajectories, maps and figures.
+/// figure is within its bounds, else 1. OUT/index.html shows trajectories, maps and figures; it is written after every run, so that
+/// Ctrl-C leaves the finished runs and --resume goes on.
+///
+/// Without names the stored logs of all suites run. A suite, a run or --all runs the experiments too, and public recordings if available.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Suites to run; all by default.
-    #[arg(value_name = "SUITE", value_parser = suites::names())]
-    suites: Vec<String>,
+    /// Suites (cml, color, consistency, lines, slam, track, views) and runs (fig6, cml/laps) with all their experiments.
+    #[arg(value_name = "SUITE|RUN")]
+    names: Vec<String>,
+    /// Every experiment of every suite.
+    #[arg(long, conflicts_with_all = ["names", "quick"])]
+    all: bool,
+    /// Stored logs and short experiments only; the default without names.
+    #[arg(long)]
+    quick: bool,
+    /// Go on with a call that was interrupted: the finished runs in OUT are not run again.
+    #[arg(long, conflicts_with = "bless")]
+    resume: bool,
     /// Folder of public recordings: utias_mrclam/MRCLAM_Dataset7, range_bearing/slam_100.txt and others (docs/accuracy.md). Without it
     /// only stored logs run.
     #[arg(long, value_name = "DIR", env = "WAYFIX_DATA")]
@@ -37,57 +55,71 @@ pub(super) struct Arguments {
     /// Do the K-th of N shares of the work and write OUT/part.json; `wayfix-experiments merge-reports` makes one report of all shares.
     #[arg(long, value_name = "K/N", default_value_t = CampaignShard::WHOLE, hide_default_value = true, conflicts_with = "bless")]
     shard: CampaignShard,
-    /// Stored logs and short experiments only.
-    #[arg(long)]
-    quick: bool,
     /// Store the present figures of the stored logs as the reference; review the change first.
     #[arg(long)]
     bless: bool,
+    /// Store how long the runs take (fixtures/costs.json), for the estimate at the start. Use it with --threads 1.
+    #[arg(long, hide_short_help = true)]
+    store_costs: bool,
     /// Threads [default: one a core]. The figures do not depend on it.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let all = || suites::names().into_iter().map(str::to_owned).collect();
+    let is_default = arguments.names.is_empty() && !arguments.all;
     let options = RegressOptions {
-        suites: if arguments.suites.is_empty() { all() } else { arguments.suites },
+        selection: RunSelection::named(&arguments.names, &arguments.fixtures)?,
         fixtures: arguments.fixtures,
         data: arguments.data,
         out: arguments.out,
         seed: arguments.seed,
         n_seeds: arguments.seeds,
-        quick: arguments.quick,
+        quick: arguments.quick || is_default,
         bless: arguments.bless,
     };
     let shard = arguments.shard;
-    let n_mine = (0..cells(&options)?.len()).filter(|index| shard.takes(*index)).count();
-    let bar = terminal::bar(n_mine, "regress");
-    let done = |name: &str| {
-        bar.set_message(name.to_owned());
-        bar.inc(1);
+    let finished = match arguments.resume {
+        true => ShardResults::finished(&options.out, &options, shard)?,
+        false => Vec::new(),
     };
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
-    let done = threads.context("cannot start the threads")?.install(|| run_shard(&options, shard, &done))?;
-    bar.finish_and_clear();
+    let threads = threads.context("cannot start the threads")?;
+
+    let calibration_s = calibration_seconds();
+    let mut to_do = shard.share(cells(&options)?);
+    to_do.retain(|cell| finished.iter().all(|done| done.cell != *cell));
+    let costs = RunCosts::read(&options.fixtures)?;
+    let time = costs.estimate(options.quick, &to_do, calibration_s);
+    print(format!("{}\n", time.told(threads.current_num_threads())))?;
+
+    let cells_done: Vec<_> = finished.iter().map(|done| done.cell.clone()).collect();
+    let session = RegressSession::new(&options, shard, finished);
+    threads.install(|| run_shard(&options, shard, &cells_done, &|done| session.add(done)))?;
+    let (done, run_costs) = session.finish()?;
+    if arguments.store_costs {
+        ensure!(threads.current_num_threads() == 1, "--store-costs needs --threads 1");
+        RunCosts::store(&options, &run_costs, calibration_s)?;
+    }
 
     if shard.is_part() {
-        let path = ShardResults::new(&options, shard, done)?.write(&options.out)?;
-        print(format!("shard {shard}: {n_mine} runs done, {}\n", path.display()))?;
+        let path = ShardResults::new(&options, shard, &done)?.write(&options.out)?;
+        print(format!("shard {shard}: {} runs done, {}\n", done.len(), path.display()))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let report = assemble(&options, &done)?;
-    let code = show(&report, &options.out)?;
+    let report = crate::regress::assemble(&options, shard, &done)?;
+    report.write(&options.out)?;
+    let code = show(&report, &options.out, !is_default && !arguments.all)?;
     if options.data.is_none() && !options.quick {
         print("Public recordings were left out: no --data and no WAYFIX_DATA.\n")?;
     }
     Ok(code)
 }
 
-/// Writes the report, prints it, and judges it.
-pub(super) fn show(report: &Report, out: &Path) -> Result<ExitCode> {
-    report.write(out)?;
-    print(table::report(report, TableStyle::of_stdout()))?;
+/// Prints the report and judges it; `in_full` prints the figures of runs that pass too.
+pub(super) fn show(report: &FullReport, out: &Path, in_full: bool) -> Result<ExitCode> {
+    let style = TableStyle::of_stdout();
+    print(if in_full { table::report(report, style) } else { failures(report, style) })?;
     print(format!("{0}/index.html  {0}/report.json\n", out.display()))?;
     Ok(if report.tally().all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

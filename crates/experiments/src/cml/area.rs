@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::world::SensorWorld;
 
 use super::localize_trip::known_start;
@@ -11,7 +11,7 @@ use wayfix_evaluation::plot::MapPlot;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
-/// Laps around the shelves. [Gross et al. 2004, Fig. 4]
+/// Laps around the shelves. [Gross et al. 2005, Fig. 4]
 const N_LAPS: usize = 7;
 
 struct Lapped {
@@ -22,7 +22,7 @@ struct Lapped {
     published: SimulatedDriveResult,
 }
 
-/// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
+/// Seven laps around shelves from an empty map, odometry as it is. [Gross et al. 2005, Fig. 4] Length and share of the setup play no part.
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
@@ -40,9 +40,9 @@ pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     for (name, lap) in [("first", 0), ("second", 1), ("last", N_LAPS - 1)] {
         metrics.extend(mean_of(&format!("error_mean_m_{name}_lap"), "m", &seeds, error(lap)));
     }
-    metrics.extend(ratio_of("last_lap_over_first", &seeds, error(N_LAPS - 1), error(0)));
-    metrics.extend(ratio_of("last_lap_over_second", &seeds, error(N_LAPS - 1), error(1)));
-    metrics.extend(mean_of("references", "", &seeds, |lapped| {
+    metrics.extend(ratio_of("error_mean_ratio_last_over_first_lap", &seeds, error(N_LAPS - 1), error(0)));
+    metrics.extend(ratio_of("error_mean_ratio_last_over_second_lap", &seeds, error(N_LAPS - 1), error(1)));
+    metrics.extend(mean_of("n_references", "", &seeds, |lapped| {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
     let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
@@ -56,7 +56,7 @@ pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Lapped> {
     let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
-    let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), ..IndoorDriveParams::default() };
     let trip = SimulatedDrive::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
     let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, published) = (with(setup.localizer)?, with(LocalizerParams::as_published())?);

@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
@@ -22,7 +22,7 @@ pub fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
         let references =
             |courses: &[SimulatedDriveResult; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
-        metrics.extend(mean_of(&format!("references_{name}"), "", &seeds, references));
+        metrics.extend(mean_of(&format!("n_references_{name}"), "", &seeds, references));
         metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| {
             mean(&courses[at].errors)
         }));
@@ -37,7 +37,7 @@ pub fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 3]> {
     let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let through = |n_people, params: LocalizerParams| {
-        let drive = IndoorParams { drive: robot(seed), n_people, ..IndoorParams::default() };
+        let drive = IndoorDriveParams { robot: robot(seed), n_people, ..IndoorDriveParams::default() };
         let trip = tour(&building, setup.length_m, drive, (seed, 0))?;
         localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };

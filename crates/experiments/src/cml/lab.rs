@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{AppearanceMapParams, ForgettingMode, LocalizerParams};
-use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorParams, Laboratory};
+use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorDriveParams, Laboratory};
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
@@ -12,13 +12,13 @@ use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Mean time between two changes of lamps or curtains, seconds.
 const SWITCHING_S: f64 = 30.0;
-/// Steps after which references are counted. [Gross et al. 2004, Table 1]
+/// Steps after which references are counted. [Gross et al. 2005, Table 1]
 const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 
 /// The drives of [`one`], as the figures call them.
 const COURSES: [&str; 4] = ["passive", "active", "passive_as_published", "active_as_published"];
 
-/// Table 1: references in a lab with changing lamps and curtains, with and without active forgetting.
+/// References in a lab with changing lamps and curtains, with and without active forgetting. [Gross et al. 2005, Table 1]
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
@@ -28,7 +28,7 @@ pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> 
         for step in STEPS {
             if seeds.iter().all(|courses| courses[at].n_references.len() >= step) {
                 let count = |courses: &[SimulatedDriveResult; 4]| courses[at].n_references[step - 1] as f64;
-                metrics.extend(mean_of(&format!("references_{name}_{step}"), "", &seeds, count));
+                metrics.extend(mean_of(&format!("n_references_{name}_{step}"), "", &seeds, count));
             }
         }
         metrics.extend(growth(name, &seeds, at));
@@ -68,15 +68,16 @@ fn growth(name: &str, seeds: &[[SimulatedDriveResult; 4]], at: usize) -> Vec<Met
         };
         at(4) / at(3) - 1.0
     };
-    mean_of(&format!("growth_last_quarter_{name}"), "", seeds, share)
+    mean_of(&format!("n_references_growth_last_quarter_{name}"), "", seeds, share)
 }
 
 /// The same drive with passive and with active forgetting, then both as published.
 fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 4]> {
     let building = Laboratory::draw(&mut Draw::World.rng(seed)).building();
     let ambient_light =
-        AmbientLightParams { mean_switching_interval_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
-    let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
+        AmbientLightParams { mean_lamp_switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
+    let params =
+        IndoorDriveParams { robot: robot(seed), ambient_light, n_people: 1, ..IndoorDriveParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |params: LocalizerParams, forgetting_mode| {

@@ -1,6 +1,6 @@
 use anyhow::Result;
 use nalgebra::Vector3;
-use wayfix_appearance_cml::{Event, LocalizerParams, Start};
+use wayfix_appearance_cml::{LocalizerEvent, LocalizerParams, StartPosePrior};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
@@ -45,8 +45,8 @@ pub fn localize_trip(
         let outcome = step.view.clone().map(|view| localizer.update(view)).transpose()?;
         course.step_s.push(stopwatch.elapsed().as_secs_f64());
         for event in outcome.into_iter().flat_map(|outcome| outcome.events) {
-            course.n_lost += usize::from(event == Event::Lost);
-            course.n_relocated += usize::from(event == Event::Relocated);
+            course.n_lost += usize::from(event == LocalizerEvent::Lost);
+            course.n_relocated += usize::from(event == LocalizerEvent::Relocated);
         }
         let estimate = localizer.estimate().map(|estimate| *estimate.mean());
         let error = |pose: Pose2<f64>| (pose.translation - step.pose.translation).norm();
@@ -59,7 +59,7 @@ pub fn localize_trip(
 
 /// A map taught with the true poses of a trip: "manually corrected odometric data".
 pub(super) fn taught(trip: &SimulatedDrive) -> Result<PanoramaMap> {
-    let mut teacher = PanoramaLocalizer::new(LocalizerParams::default(), Start::Anywhere)?;
+    let mut teacher = PanoramaLocalizer::new(LocalizerParams::default(), StartPosePrior::Anywhere)?;
     for step in &trip.steps {
         if let Some(view) = &step.view {
             teacher.teach(view.clone(), &surveyed(step.pose)?)?;
@@ -69,10 +69,10 @@ pub(super) fn taught(trip: &SimulatedDrive) -> Result<PanoramaMap> {
 }
 
 /// A start that was measured by hand.
-pub(super) fn known_start(trip: &SimulatedDrive) -> Result<Start> {
+pub(super) fn known_start(trip: &SimulatedDrive) -> Result<StartPosePrior> {
     Ok(match trip.steps.first() {
-        Some(first) => Start::Known(surveyed(first.pose)?),
-        None => Start::Anywhere,
+        Some(first) => StartPosePrior::Known(surveyed(first.pose)?),
+        None => StartPosePrior::Anywhere,
     })
 }
 

@@ -3,8 +3,8 @@ use nalgebra::Vector2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use wayfix_appearance_cml::Start;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_appearance_cml::StartPosePrior;
+use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::route::Route;
 
 use super::localize_trip::{known_start, taught};
@@ -43,7 +43,10 @@ const MOST_DRAWS: usize = 1000;
 pub fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, map, at, TRAVEL_M)?;
-        localize_trip(&mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), Start::Anywhere)?, &trip)
+        localize_trip(
+            &mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), StartPosePrior::Anywhere)?,
+            &trip,
+        )
     })?;
     report("From anywhere", setup, &courses)
 }
@@ -74,7 +77,7 @@ pub fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Result<Rep
     let (low, high) = proportion_interval(n_diverged as u64, found.len() as u64);
     let metrics = vec![
         Metric::new("trials", courses.len() as f64, ""),
-        Metric::new("n_relocalized", found.len() as f64, ""),
+        Metric::new("n_relocalized_trials", found.len() as f64, ""),
         Metric::new("diverged_after_relocalization_share", share(n_diverged), ""),
         Metric::new("diverged_after_relocalization_share_low95", low, ""),
         Metric::new("diverged_after_relocalization_share_high95", high, ""),
@@ -113,7 +116,8 @@ fn in_stores(
     let stores = CmlExperimentSetup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
     let courses = over_seeds(&stores, seed, |seed| {
         let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
-        let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+        let params =
+            IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
         let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
         let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
         let n_runs = RUNS_PER_STORE.min(setup.n_seeds);
@@ -131,7 +135,7 @@ fn away(
 ) -> Result<SimulatedDrive> {
     let mut rng = Draw::Visit(visit).rng(seed);
     let route = known_route(building, map, length_m, &mut rng)?;
-    let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
     let mut trip = SimulatedDrive::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
     let mut travelled_m = 0.0;
     trip.steps.retain(|step| {

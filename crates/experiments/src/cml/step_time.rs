@@ -1,9 +1,9 @@
 use std::hint::black_box;
 
 use anyhow::Result;
-use wayfix_appearance_cml::{Learning, LocalizerParams, PanoramaDescriptor, Start};
+use wayfix_appearance_cml::{LocalizerParams, MapLearning, PanoramaDescriptor, StartPosePrior};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
 
 use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
@@ -29,7 +29,7 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let shape =
         RetailStoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..RetailStoreParams::home_store() };
     let building = RetailStore::draw(shape, &mut Draw::World.rng(seed))?.building();
-    let params = IndoorParams { drive: robot(seed), n_people: 20, ..IndoorParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: 20, ..IndoorDriveParams::default() };
     let learned = tour(&building, setup.length_m, params, (seed, 0))?;
     let mut again = tour(&building, 0.25 * N_STEPS as f64, params, (seed, 1))?;
     again.steps.truncate(N_STEPS);
@@ -39,8 +39,8 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let mut map = taught(&SimulatedDrive { steps: learned.steps[..first].to_vec() })?;
     let mut more = between(&learned).skip(first);
     // Half way along the part that every map contains, away from the drive.
-    let elsewhere = Start::Known(surveyed(learned.steps[first / 2].pose)?);
-    let astray = LocalizerParams { learning: Learning::Static, ..setup.localizer };
+    let elsewhere = StartPosePrior::Known(surveyed(learned.steps[first / 2].pose)?);
+    let astray = LocalizerParams { map_learning: MapLearning::Static, ..setup.localizer };
     let (mut steps, mut doubts, mut searches) = (Vec::new(), Vec::new(), Vec::new());
     let median_ms = |seconds| quantile_ms(seconds, 0.5);
     for n in N_REFERENCES {
@@ -77,12 +77,17 @@ pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         ..LinePlot::default()
     };
     let of = |(what, times): (&str, &[(f64, f64)])| {
-        let named = |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}"), *ms, "ms");
+        let named =
+            |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}_references"), *ms, "ms");
         N_REFERENCES.iter().zip(times).map(named).collect::<Vec<_>>()
     };
-    let timings = [("step_median", &steps[..]), ("kidnapped_p95", &doubts), ("search_median", &searches)]
-        .map(of)
-        .concat();
+    let timings = [
+        ("step_time_median", &steps[..]),
+        ("kidnapped_step_time_p95", &doubts),
+        ("global_search_time_median", &searches),
+    ]
+    .map(of)
+    .concat();
     Ok(ReportRun { timings, figures: vec![plot.draw()?], ..ReportRun::default() })
 }
 
@@ -108,7 +113,7 @@ fn search_s(map: &PanoramaMap, trip: &SimulatedDrive, params: &LocalizerParams) 
         black_box(map.place_matches(
             view,
             &[],
-            params.simplify.max_components,
+            params.mixture_reduction.max_components,
             (&params.map, params.fusion.gate),
         ));
         stopwatch.elapsed().as_secs_f64()

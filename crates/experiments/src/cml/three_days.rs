@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 
 use super::area::plan;
 use super::localize_trip::known_start;
@@ -27,7 +27,7 @@ struct Day {
     published: SimulatedDriveResult,
 }
 
-/// Fig. 6: three days from an empty map, odometry as it is; each day begins where the robot is charged.
+/// Three days from an empty map, odometry as it is; each day begins where the robot is charged. [Gross et al. 2005, Fig. 6]
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
@@ -46,11 +46,11 @@ pub fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
             mean(&days[day].published.errors)
         }));
         let references = |days: &Vec<Day>| days[day].course.n_references.last().map_or(0.0, |n| *n as f64);
-        metrics.extend(mean_of(&format!("references_day{number}"), "", &seeds, references));
+        metrics.extend(mean_of(&format!("n_references_day{number}"), "", &seeds, references));
     }
     let error = |day: usize| move |days: &Vec<Day>| mean(&days[day].course.errors);
-    metrics.extend(ratio_of("day2_over_day1", &seeds, error(1), error(0)));
-    metrics.extend(ratio_of("day3_over_day2", &seeds, error(2), error(1)));
+    metrics.extend(ratio_of("error_mean_ratio_day2_over_day1", &seeds, error(1), error(0)));
+    metrics.extend(ratio_of("error_mean_ratio_day3_over_day2", &seeds, error(2), error(1)));
     let errors = |day: usize| seeds.iter().flat_map(|days| days[day].course.errors.clone()).collect();
     let days = (0..N_DAYS).map(|day| (format!("day {}", day + 1), errors(day))).collect();
     let mut figures = vec![histogram("Errors of three days", 2.0, days).draw()?];
@@ -82,7 +82,7 @@ fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Vec<Day>> {
         ..RetailStoreParams::home_store()
     };
     let mut store = RetailStore::draw(shape, &mut Draw::World.rng(seed))?;
-    let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+    let params = IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };
     let mut localizers =
         [setup.localizer, LocalizerParams::as_published()].map(|params| (params, PanoramaMap::default()));
     let mut days = Vec::new();

@@ -1,9 +1,9 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{
-    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams,
+    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaDescriptorExtractor, PanoramaDescriptorParams,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorDriveStep, IndoorParams};
+use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorDriveParams, IndoorDriveStep};
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::route::Route;
 
@@ -33,14 +33,16 @@ impl SimulatedDrive {
     pub fn drive(
         building: &Building,
         route: Route,
-        params: IndoorParams,
+        params: IndoorDriveParams,
         streams: RandomStreams,
     ) -> Result<Self> {
         let camera = params.camera;
         // As the simulated camera unrolls its views; everything else is the default.
-        let params_of_view =
-            PanoramaParams { azimuth_direction: AzimuthDirection::Clockwise, ..PanoramaParams::default() };
-        let features = PanoramaFeatures::new(params_of_view, camera.n_columns, camera.n_rings)?;
+        let params_of_view = PanoramaDescriptorParams {
+            azimuth_direction: AzimuthDirection::Clockwise,
+            ..PanoramaDescriptorParams::default()
+        };
+        let features = PanoramaDescriptorExtractor::new(params_of_view, camera.n_columns, camera.n_rings)?;
         let step = |step: IndoorDriveStep| {
             let panorama = Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)?;
             let view = features.describe(&panorama).ok();
@@ -65,7 +67,7 @@ impl SimulatedDrive {
 
 #[cfg(test)]
 mod tests {
-    use wayfix_appearance_cml::Descriptor;
+    use wayfix_appearance_cml::ViewDescriptor;
     use wayfix_estimation_traits::wrap_angle;
 
     use super::super::worlds::{Draw, tour};
@@ -76,7 +78,7 @@ mod tests {
     #[test]
     fn views_turn_with_the_robot() {
         let building = wayfix_scene_sim::indoors::Laboratory::draw(&mut Draw::World.rng(SEED)).building();
-        let trip = tour(&building, 60.0, IndoorParams::default(), (SEED, 0)).unwrap();
+        let trip = tour(&building, 60.0, IndoorDriveParams::default(), (SEED, 0)).unwrap();
         let mut off: Vec<f64> = trip
             .steps
             .windows(2)
@@ -96,7 +98,7 @@ mod tests {
     #[test]
     fn odometry_drifts_and_starts_at_the_truth() {
         let building = wayfix_scene_sim::indoors::Laboratory::draw(&mut Draw::World.rng(SEED)).building();
-        let trip = tour(&building, 60.0, IndoorParams::default(), (SEED, 0)).unwrap();
+        let trip = tour(&building, 60.0, IndoorDriveParams::default(), (SEED, 0)).unwrap();
         let reckoned = trip.dead_reckoning();
         let errors: Vec<f64> = trip
             .steps

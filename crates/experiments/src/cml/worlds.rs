@@ -2,7 +2,7 @@ use anyhow::Result;
 use rand::Rng;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::drive::WheeledRobotParams;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, calibrated_robot};
+use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, calibrated_robot};
 use wayfix_scene_sim::random::RandomStreams;
 
 use super::SimulatedDrive;
@@ -48,7 +48,7 @@ pub(super) fn robot(seed: u64) -> WheeledRobotParams {
 pub(super) fn tour(
     building: &Building,
     length_m: f64,
-    params: IndoorParams,
+    params: IndoorDriveParams,
     (seed, visit): (u64, u64),
 ) -> Result<SimulatedDrive> {
     let route = building.aisles().tour(length_m, &mut Draw::Visit(visit).rng(seed))?;

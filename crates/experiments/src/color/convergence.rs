@@ -4,7 +4,7 @@ use anyhow::Result;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_scene_sim::league::{LampSetting, LeagueParams};
 use wayfix_scene_sim::random::RandomStreams;
 
@@ -49,7 +49,7 @@ pub struct ConvergenceTrial {
 pub fn global_start(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     let trials = trials(seeds, |seed| {
@@ -70,7 +70,7 @@ pub fn global_start(
 pub fn kidnapped(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceCount> {
     const BEFORE: usize = 40;
@@ -103,7 +103,7 @@ fn trial(
     drive: LeagueParams,
     start: Option<StartPose>,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ConvergenceTrial> {
     let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
@@ -155,8 +155,8 @@ impl ConvergenceCount {
                 Metric::new("success_share", n_succeeded as f64 / n.max(1) as f64, ""),
                 Metric::new("success_share_low95", low, ""),
                 Metric::new("success_share_high95", high, ""),
-                Metric::new("near_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
-                Metric::new("n_confident_failures", n_deceived as f64, ""),
+                Metric::new("near_truth_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
+                Metric::new("n_failures_reported_as_tracking", n_deceived as f64, ""),
             ],
             figures: vec![self.plot().draw()?],
             notes,

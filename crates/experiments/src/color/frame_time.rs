@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_sensor_log::{Record, RecordData};
 
 use wayfix_evaluation::{
@@ -23,7 +23,7 @@ const N_FRAMES: usize = 40;
 pub fn frame_time(
     records: &[Record],
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
     seed: u64,
 ) -> Result<ReportRun> {
@@ -37,11 +37,14 @@ pub fn frame_time(
         let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
         points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));
     }
-    let timings = points
-        .iter()
-        .map(|(n, ms)| Metric::new(format!("frame_median_ms_{n}"), *ms, "ms"))
-        .chain(points.iter().map(|(n, ms)| Metric::new(format!("us_per_particle_{n}"), 1e3 * ms / n, "µs")))
-        .collect();
+    let timings =
+        points
+            .iter()
+            .map(|(n, ms)| Metric::new(format!("frame_time_median_ms_{n}_particles"), *ms, "ms"))
+            .chain(points.iter().map(|(n, ms)| {
+                Metric::new(format!("time_per_particle_us_{n}_particles"), 1e3 * ms / n, "µs")
+            }))
+            .collect();
     let plot = LinePlot {
         title: "Computing time of a frame".to_owned(),
         x_label: "particles".to_owned(),

@@ -4,8 +4,8 @@ use anyhow::Result;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_color_model::LightingFilterBank;
+use wayfix_scene_sim::league::LeagueParams;
 use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
 
@@ -15,14 +15,14 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, run, summarize};
 
-/// The drive of the stored logs in random halls: means over halls with 95 % intervals.
+/// A drive in random halls: means over halls with 95 % intervals.
 /// # Errors
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: LampSetting,
+    drive_params: &LeagueParams,
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
+    bank: &LightingFilterBank,
     params: &ColorSystemParams,
 ) -> Result<ReportRun> {
     let seeds: Vec<u64> = seeds.into_iter().collect();
@@ -30,14 +30,15 @@ pub fn other_halls(
         .par_iter()
         .map(|&seed| {
             let mut run =
-                run(&drive(seed, lighting)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+                run(&drive(seed, drive_params)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;
     let value = |run: &ReportRun, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
     let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
-    let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
-    let errors = [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("odometry_position_mean_m", "m")];
+    let rates = map.colors().iter().map(|color| (format!("classification_rate_{color}"), ""));
+    let errors =
+        [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("dead_reckoning_position_error_mean_m", "m")];
     let overall = [("classification_rate", "")];
     let named = overall.into_iter().chain(errors).map(|(name, unit)| (name.to_owned(), unit));
     for (name, unit) in named.chain(rates) {
@@ -51,8 +52,7 @@ pub fn other_halls(
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
-/// The drive of the stored logs in its own hall.
-pub(super) fn drive(seed: u64, lighting: LampSetting) -> Result<Vec<Record>> {
-    let drive = LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() };
-    Ok(drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
+/// The log of a drive in a hall of its own.
+pub(super) fn drive(seed: u64, params: &LeagueParams) -> Result<Vec<Record>> {
+    Ok(params.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

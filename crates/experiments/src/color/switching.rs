@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingBank,
+    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingFilterBank,
     LightingTracker, PixelClassifier, PixelLikelihoodParams, YuvImage, YuvStandard,
 };
 use wayfix_kalman::JumpMarkovFilterParams;
@@ -16,7 +16,7 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
 
-/// Figure 6 of [Schulz & Fox 2004]: the classification rate frame by frame under switched light, of a jump Markov model and of one Gaussian, both
+/// The classification rate [Schulz & Fox 2004, Fig. 6] frame by frame under switched light, of a jump Markov model and of one Gaussian, both
 /// while localizing; and of every light tracker with known poses.
 ///
 /// `switches` are the frames at which the light changes; `bank` has one filter per light, `single` one for all.
@@ -26,12 +26,12 @@ pub fn switching(
     records: &[Record],
     switches: &[usize],
     map: &Arc<ColorMap>,
-    bank: &LightingBank,
-    single: &LightingBank,
+    bank: &LightingFilterBank,
+    single: &LightingFilterBank,
     params: &ColorSystemParams,
     seed: u64,
 ) -> Result<ReportRun> {
-    let localized = |bank: &LightingBank| -> Result<Curve> {
+    let localized = |bank: &LightingFilterBank| -> Result<Curve> {
         let run = run(records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
         Ok(rates(&run))
     };
@@ -52,7 +52,11 @@ pub fn switching(
             mean(curve.iter().map(|point| point.1)),
             "",
         ));
-        metrics.push(Metric::new(format!("{name}_worst_drop"), worst_drop(curve, switches), ""));
+        metrics.push(Metric::new(
+            format!("{name}_classification_rate_worst_drop_at_switch"),
+            worst_drop(curve, switches),
+            "",
+        ));
     }
     let figures = vec![
         plot("Classification rate while lights are switched, localizing", &curves).draw()?,
@@ -81,7 +85,9 @@ fn worst_drop(curve: &Curve, switches: &[usize]) -> f64 {
         let at = switch as f64;
         between(at - AROUND, at) - between(at, at + AROUND)
     };
-    switches.iter().map(fall).fold(f64::NEG_INFINITY, f64::max)
+    let is_shown =
+        |switch: &&usize| curve.last().is_some_and(|(last, _)| *last >= **switch as f64 + AROUND - 1.0);
+    switches.iter().filter(is_shown).map(fall).fold(f64::NEG_INFINITY, f64::max)
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::LightingPriors;
-use wayfix_scene_sim::league::LampSetting;
+use wayfix_scene_sim::league::LeagueParams;
 use wayfix_sensor_log::Record;
 
 use super::halls::drive;
@@ -20,7 +20,8 @@ const MIN_PIXELS: u64 = 20;
 /// Classification rates of a withheld colour per image: with the joint prior and with the independent one.
 type Rates = [Vec<f64>; 2];
 
-/// Table 1 of [Schulz & Fox 2004], lower half: each colour is withheld from the lighting filter in turn. Its classification rate then depends on the
+/// The lower half of [Schulz & Fox 2004, Table 1]: each colour is withheld from the lighting filter in turn. Its classification rate then
+/// depends on the
 /// other colours (joint prior) or on its prior alone (independent: all correlations between colours set to zero). Means over the images of the log
 /// with 95 % intervals; the gain of the joint prior is from differences in the same image.
 /// # Errors
@@ -42,14 +43,14 @@ pub fn withheld(
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: LampSetting,
+    drive_params: &LeagueParams,
     map: &Arc<ColorMap>,
     learned: &LightingPriors,
     params: &ColorSystemParams,
 ) -> Result<ReportRun> {
     let halls: Vec<Vec<Rates>> = seeds
         .into_iter()
-        .map(|seed| rates(&drive(seed, lighting)?, map, learned, params, seed))
+        .map(|seed| rates(&drive(seed, drive_params)?, map, learned, params, seed))
         .collect::<Result<_>>()?;
     let mut metrics = vec![Metric::new("n_halls", halls.len() as f64, "")];
     for (color, name) in map.colors().iter().enumerate() {
@@ -65,8 +66,9 @@ pub fn withheld_in_halls(
 fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
     let mean_of = |what: &str, values: &[f64]| {
-        MeanInterval::of(values)
-            .map(|mean| (Metric::of_mean(&format!("withheld_{name}_rate_{what}"), &mean, ""), mean))
+        MeanInterval::of(values).map(|mean| {
+            (Metric::of_mean(&format!("withheld_{name}_classification_rate_{what}"), &mean, ""), mean)
+        })
     };
     let all = [
         mean_of("joint_prior", joint),
@@ -75,7 +77,7 @@ fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     ];
     let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
     let low = Metric::new(
-        format!("withheld_{name}_rate_joint_minus_independent_low95"),
+        format!("withheld_{name}_classification_rate_joint_minus_independent_low95"),
         mean.mean - mean.half_width,
         "",
     );

@@ -2,12 +2,12 @@ use anyhow::{Context, Result};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
+    EkfSlam, KnownIdAssociation, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
 };
 
 use super::{ComparedFilter, CorridorLaps};
 use crate::monobot::plain_filter;
-use wayfix_evaluation::errors::TrajectorySample;
+use wayfix_evaluation::errors::PoseWithTruth;
 
 /// Estimate and truth after one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub fn drive(
                 has_moved = true;
             }
             RecordData::Detections(detections) => {
-                slam.update(&observations(detections), &mut KnownIds)?;
+                slam.update(&observations(detections), &mut KnownIdAssociation)?;
                 if has_moved {
                     samples.push(consistency_sample(
                         &slam,
@@ -99,7 +99,7 @@ fn consistency_sample(
     truth: Pose2<f64>,
     seconds: f64,
 ) -> ConsistencySample {
-    let sample = TrajectorySample { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
+    let sample = PoseWithTruth { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
     ConsistencySample {
         seconds,
         nees: sample.nees_of(&kind.error(&sample)).unwrap_or(f64::NAN),

@@ -1,5 +1,6 @@
 use anyhow::{Result, ensure};
 use wayfix_gaussian_core::ChiSquaredBand;
+use wayfix_sensor_log::Record;
 
 use super::{ComparedFilter, ConsistencySample, CorridorLaps, drive};
 use wayfix_evaluation::report::Metric;
@@ -44,11 +45,23 @@ const POSE: usize = 3;
 /// # Errors
 /// Returns an error if `n_runs` is 0, a parameter is out of range, the robot never moves or a filter fails.
 pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<ConsistencyMonteCarlo> {
+    // No two of a call share a seed.
+    over_logs(laps, n_runs, |k| laps.simulate(seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k))))
+}
+
+/// Runs the filters with the noise of `laps` over `n_runs` logs; `log` gives the k-th.
+///
+/// # Errors
+/// Returns an error if `n_runs` is 0, `log` fails, the robot never moves or a filter fails.
+pub fn over_logs(
+    laps: &CorridorLaps,
+    n_runs: u32,
+    log: impl Fn(u32) -> Result<Vec<Record>>,
+) -> Result<ConsistencyMonteCarlo> {
     ensure!(n_runs >= 1, "an average needs a run");
     let mut runs: [Vec<Vec<ConsistencySample>>; 4] = Default::default();
     for k in 0..n_runs {
-        let seed = seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k)); // no two of a call share one
-        let records = laps.simulate(seed)?;
+        let records = log(k)?;
         for (runs, kind) in runs.iter_mut().zip(ComparedFilter::ALL) {
             runs.push(drive(laps, &records, kind)?);
         }
@@ -72,20 +85,20 @@ pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<Consis
 impl ConsistencyMonteCarlo {
     /// The figures of all filters, their names before them.
     ///
-    /// `nees_outside_band_share` is of samples outside the pointwise band, `n_outside_whole_run` of samples outside the one for the whole run.
+    /// `nees_outside_band_share` is of samples outside the pointwise band, `n_samples_nees_outside_whole_run_band` of samples outside the one for the whole run.
     pub fn metrics(&self) -> Vec<Metric> {
         let mut metrics = vec![
             Metric::new("n_runs", f64::from(self.n_runs), ""),
-            Metric::new("heading_sigma_at_closure_rad", self.heading_sigma_at_closure(), "rad"),
+            Metric::new("heading_sigma_before_loop_closure_rad", self.heading_sigma_at_closure(), "rad"),
         ];
         for course in &self.courses {
             let name = |figure: &str| format!("{}_{figure}", course.kind.name());
             metrics.push(Metric::new(name("nees_mean"), course.mean(|look| look.nees), ""));
             metrics.push(Metric::new(name("nees_outside_band_share"), course.share_outside(&self.band), ""));
             let n_outside = course.share_outside(&self.whole_run_band) * course.samples.len() as f64;
-            metrics.push(Metric::new(name("n_outside_whole_run"), n_outside.round(), ""));
+            metrics.push(Metric::new(name("n_samples_nees_outside_whole_run_band"), n_outside.round(), ""));
             let rmse = course.mean(|look| look.position_error.powi(2)).sqrt();
-            metrics.push(Metric::new(name("rmse_m"), rmse, "m"));
+            metrics.push(Metric::new(name("position_rmse_m"), rmse, "m"));
         }
         metrics
     }

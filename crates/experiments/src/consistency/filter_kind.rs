@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use wayfix_evaluation::errors::TrajectorySample;
+use wayfix_evaluation::errors::PoseWithTruth;
 use wayfix_slam_ekf::LinearizationPoint;
 
 /// The filters that are compared.
@@ -23,7 +23,7 @@ impl ComparedFilter {
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "standard",
-            Self::Anchored => "anchored",
+            Self::Anchored => "known_landmarks",
             Self::FirstEstimates => "first_estimates",
             Self::Invariant => "invariant",
         }
@@ -41,16 +41,16 @@ impl ComparedFilter {
     /// The error in the coordinates in which the filter takes it for Gaussian: exponential ones for the invariant filter.
     ///
     /// ```
-    /// use wayfix_evaluation::errors::TrajectorySample;
+    /// use wayfix_evaluation::errors::PoseWithTruth;
     /// use wayfix_experiments::consistency::ComparedFilter;
     /// use nalgebra::Matrix3;
     /// use wayfix_estimation_traits::Pose2;
     /// let (estimate, truth) = (Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, 0.0, 0.2));
-    /// let sample = TrajectorySample { estimate, covariance: Matrix3::identity(), truth };
+    /// let sample = PoseWithTruth { estimate, covariance: Matrix3::identity(), truth };
     /// assert!(ComparedFilter::Standard.error(&sample).y.abs() < 1e-12);
     /// assert!((ComparedFilter::Invariant.error(&sample).y + 0.1).abs() < 1e-12); // half the turn, over one metre
     /// ```
-    pub fn error(self, sample: &TrajectorySample) -> Vector3<f64> {
+    pub fn error(self, sample: &PoseWithTruth) -> Vector3<f64> {
         match self {
             Self::Invariant => sample.exponential_error(),
             _ => sample.error(),

@@ -5,7 +5,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
 use wayfix_scene_sim::{
-    OdometryParams, PlanarParams,
+    OdometryParams, PlanarDriveParams,
     drive::WheeledRobotParams,
     random::RandomStreams,
     route::{RoundedRectangleRoute, RouteParams},
@@ -106,7 +106,7 @@ impl CorridorLaps {
         }
     }
 
-    fn scene(&self) -> PlanarParams {
+    fn scene(&self) -> PlanarDriveParams {
         let around = RoundedRectangleRoute {
             length_m: self.length_m,
             width_m: self.width_m,
@@ -115,10 +115,10 @@ impl CorridorLaps {
         let lap_m = 2.0 * (self.length_m + self.width_m) - (8.0 - TAU) * CORNER_RADIUS_M;
         let odometry = GaussianOdometryParams {
             period_ms: PERIOD_MS,
-            sigma_m: self.odometry_sigma_m,
-            sigma_rad: self.odometry_sigma_rad,
+            increment_position_sigma_m: self.odometry_sigma_m,
+            increment_heading_sigma_rad: self.odometry_sigma_rad,
         };
-        PlanarParams {
+        PlanarDriveParams {
             layout: WorldLayout::CorridorLoop(CorridorLoop {
                 length_m: self.length_m,
                 width_m: self.width_m,
@@ -128,7 +128,7 @@ impl CorridorLaps {
             n_unknown_codes: 0,
             other_robots: Vec::new(),
             route: RouteParams::RoundedRectangle(around),
-            drive: WheeledRobotParams {
+            robot: WheeledRobotParams {
                 speed_mps: SPEED_MPS,
                 acceleration_mps2: 2.0,
                 lookahead_m: 2.0,

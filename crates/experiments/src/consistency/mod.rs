@@ -9,7 +9,7 @@ mod laps;
 mod plots;
 
 pub use drive::{ConsistencySample, drive};
-pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo};
+pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo, over_logs};
 pub use filter_kind::ComparedFilter;
 pub use laps::CorridorLaps;
 pub use plots::picture;

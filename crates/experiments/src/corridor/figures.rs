@@ -1,5 +1,5 @@
 use anyhow::Result;
-use wayfix_condensation::DescriptorTable;
+use wayfix_condensation::StateDescriptorTable;
 
 use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 use wayfix_evaluation::report::Metric;
@@ -17,7 +17,7 @@ pub(super) struct Variants {
 }
 
 impl Variants {
-    pub(super) fn of(learned: &DescriptorTable, seen: &DescriptorTable) -> Result<Self> {
+    pub(super) fn of(learned: &StateDescriptorTable, seen: &StateDescriptorTable) -> Result<Self> {
         let share = |method| LocalizationRun::of(learned, seen, method).map(|journey| journey.share());
         Ok(Self {
             filtered: LocalizationRun::of(learned, seen, Method::Filter(STEADY))?,
@@ -32,13 +32,13 @@ impl Variants {
 }
 
 /// Share of short drives, one from each frame, of `n_frames` frames, that are localized at the end. NaN if none is that long.
-fn found_after(n_frames: usize, learned: &DescriptorTable, seen: &DescriptorTable) -> Result<f64> {
+fn found_after(n_frames: usize, learned: &StateDescriptorTable, seen: &StateDescriptorTable) -> Result<f64> {
     let n_starts = (seen.n_states() + 1).saturating_sub(n_frames);
     let mut n_found = 0;
     for start in 0..n_starts {
         let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(n_frames).map(<[f64]>::to_vec).collect();
         let journey =
-            LocalizationRun::of(learned, &DescriptorTable::from_rows(&rows)?, Method::Filter(STEADY))?;
+            LocalizationRun::of(learned, &StateDescriptorTable::from_rows(&rows)?, Method::Filter(STEADY))?;
         let place = journey.best.last().copied().unwrap_or(0);
         n_found += usize::from(place.abs_diff(start + n_frames - 1) <= TOLERANCE);
     }
@@ -52,13 +52,19 @@ pub(super) fn metrics(variants: &[(DescriptorKind, Variants)]) -> Vec<Metric> {
             .iter()
             .map(move |(kind, variants)| Metric::new(format!("{}{suffix}", kind.name()), value(variants), ""))
     };
-    column("_share", |v| v.filtered.share())
-        .chain(column("_share_swapped", |v| v.swapped))
-        .chain(column("_share_vague_motion", |v| v.vague_motion))
-        .chain(column("_share_independent", |v| v.independent))
-        .chain(column("_share_single_frame", |v| v.single_frame))
-        .chain(column("_share_after_10_frames", |v| v.after_10_frames).filter(|m| m.value.is_finite()))
-        .chain(column("_share_after_30_frames", |v| v.after_30_frames).filter(|m| m.value.is_finite()))
-        .chain(column("_correlation_length", |v| v.filtered.correlation_length))
+    column("_localized_frame_share", |v| v.filtered.share())
+        .chain(column("_localized_frame_share_swapped", |v| v.swapped))
+        .chain(column("_localized_frame_share_vague_motion", |v| v.vague_motion))
+        .chain(column("_localized_frame_share_independent", |v| v.independent))
+        .chain(column("_localized_frame_share_single_frame", |v| v.single_frame))
+        .chain(
+            column("_localized_frame_share_after_10_frames", |v| v.after_10_frames)
+                .filter(|m| m.value.is_finite()),
+        )
+        .chain(
+            column("_localized_frame_share_after_30_frames", |v| v.after_30_frames)
+                .filter(|m| m.value.is_finite()),
+        )
+        .chain(column("_neighbour_frame_correlation_length", |v| v.filtered.correlation_length))
         .collect()
 }

@@ -1,6 +1,6 @@
 use anyhow::Result;
 use wayfix_condensation::{
-    DescriptorTable, DiscreteFilter, RouteTraverse, RouteTraverseParams, SparseTransition,
+    DiscreteFilter, RouteAppearanceModel, RouteAppearanceParams, SparseTransition, StateDescriptorTable,
 };
 
 /// Tolerance of a correct place, in frames: the definition of the data set.
@@ -36,10 +36,14 @@ pub(super) struct LocalizationRun {
 
 impl LocalizationRun {
     /// Goes through the frames of one traverse, knowing the other.
-    pub(super) fn of(learned: &DescriptorTable, seen: &DescriptorTable, method: Method) -> Result<Self> {
+    pub(super) fn of(
+        learned: &StateDescriptorTable,
+        seen: &StateDescriptorTable,
+        method: Method,
+    ) -> Result<Self> {
         let params =
-            RouteTraverseParams { same_place_tolerance: TOLERANCE, ..RouteTraverseParams::default() };
-        let traverse = RouteTraverse::learn(learned, &params)?;
+            RouteAppearanceParams { same_place_tolerance: TOLERANCE, ..RouteAppearanceParams::default() };
+        let traverse = RouteAppearanceModel::learn(learned, &params)?;
         let n_places = traverse.n_states();
         let motion = match method {
             Method::Filter(steps) | Method::Independent(steps) => Some(drives_on(n_places, steps)?),

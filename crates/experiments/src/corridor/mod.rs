@@ -5,7 +5,7 @@
 //! frame counts as found if the most probable place is at most two off.
 //!
 //! The filter assumes forward motion: one place per frame, zero or two in a tenth of the frames each. All other parameters are learned from the
-//! first traverse ([`Traverse`](wayfix_condensation::RouteTraverse)), but the form of the model was chosen on this corridor. Four variants are reported
+//! first traverse ([`Traverse`](wayfix_condensation::RouteAppearanceModel)), but the form of the model was chosen on this corridor. Four variants are reported
 //! too: the traverses swapped, vaguer motion, no filter, and frames assumed independent; and the share of short drives, one from each frame, that
 //! are localized at the end.
 

@@ -1,8 +1,8 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use wayfix_condensation::{DescriptorTable, DominantGrayCriterion, RgbImage, View};
-use wayfix_sensor_log::{EncodedImage, OpenOptions, RecordData};
+use wayfix_condensation::{DominantGrayCriterion, RgbImage, StateDescriptorTable, View};
+use wayfix_sensor_log::{EncodedImage, LogOpenOptions, RecordData};
 
 use wayfix_systems::views::{DescriptorKind, ViewsError};
 
@@ -39,18 +39,18 @@ impl Traverses {
 }
 
 /// The features of every frame.
-pub(super) fn features(frames: &[Frame], kind: DescriptorKind) -> Result<DescriptorTable> {
+pub(super) fn features(frames: &[Frame], kind: DescriptorKind) -> Result<StateDescriptorTable> {
     let feature = kind.feature(DominantGrayCriterion::default());
     let row = |frame: &Frame| -> Result<Vec<f64>> {
         let mut row = vec![0.0; feature.n_components()];
         feature.extract(&View::whole(&frame.picture)?, &mut row);
         Ok(row)
     };
-    Ok(DescriptorTable::from_rows(&frames.iter().map(row).collect::<Result<Vec<_>>>()?)?)
+    Ok(StateDescriptorTable::from_rows(&frames.iter().map(row).collect::<Result<Vec<_>>>()?)?)
 }
 
 fn read(folder: &Path) -> Result<Vec<Frame>> {
-    let (records, report) = wayfix_sensor_log::open(folder, &OpenOptions::default())?.read_all();
+    let (records, report) = wayfix_sensor_log::open(folder, &LogOpenOptions::default())?.read_all();
     ensure!(report.is_clean(), "{}: {report}", folder.display());
     let images = records.into_iter().filter_map(|record| match record.data {
         RecordData::Image(image) => Some(image),

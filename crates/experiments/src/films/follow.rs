@@ -56,7 +56,7 @@ pub fn follow(
     Ok(scores)
 }
 
-fn pixels(frame: &FilmFrame) -> Result<RgbImage> {
+pub(super) fn pixels(frame: &FilmFrame) -> Result<RgbImage> {
     let picture = &frame.picture;
     RgbImage::from_raw(picture.width as u32, picture.height as u32, picture.rgb.clone())
         .context("a frame of the film has not three bytes a pixel")

@@ -15,7 +15,7 @@ use wayfix_systems::track::{LostStatusScore, TrackParams, TrackRunHistory, Track
 const N_END: usize = 20;
 
 /// A film with many seeds through several methods: overlap with its interval over the seeds, centre error, frames lost. Pictures are of
-/// the first method and seed.
+/// the first method and seed. [Andrade-Cetto 2005, Fig. 13]
 ///
 /// # Errors
 /// Returns an error if a tracker cannot begin or refuses a frame, or a picture not be drawn.
@@ -39,8 +39,8 @@ pub fn table(
     for (k, method) in methods.iter().enumerate() {
         let scores: Vec<&FilmTrackingScore> = runs.iter().map(|(scores, ..)| &scores[k]).collect();
         let prefix = method.name().replace('-', "_");
-        let named = |metric: Metric| Metric { name: format!("{prefix}_{}", metric.name), ..metric };
-        metrics.extend(over_seeds(&scores, film.occlusion).into_iter().map(named));
+        let of_method = over_seeds(&scores, film.occlusion).into_iter();
+        metrics.extend(of_method.map(|metric| prefixed(&prefix, metric)));
     }
     let mut steps: Vec<Duration> = runs.iter().flat_map(|(.., steps)| steps).copied().collect();
     steps.sort_unstable();
@@ -52,7 +52,12 @@ pub fn table(
     Ok(ReportRun { metrics, timings, figures, notes, ..ReportRun::default() })
 }
 
-fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<Metric> {
+/// With the name of what it is about before its own.
+pub(super) fn prefixed(prefix: &str, metric: Metric) -> Metric {
+    Metric { name: format!("{prefix}_{}", metric.name), ..metric }
+}
+
+pub(super) fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<Metric> {
     let all = |values: fn(&FilmTrackingScore) -> &Vec<f64>| -> Vec<f64> {
         scores.iter().flat_map(|score| values(score)).copied().collect()
     };
@@ -64,7 +69,7 @@ fn over_seeds(scores: &[&FilmTrackingScore], occlusion: OcclusionEvent) -> Vec<M
         .map(|MeanInterval { half_width, n, .. }| ConfidenceInterval { half_width, n });
     let mut metrics = vec![
         Metric { spread, ..Metric::new("iou_mean", mean(&ious), "") },
-        Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
+        Metric::new("iou_mean_of_worst_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
         Metric::new("n_frames_lost", sum(|score| score.n_lost), ""),
     ];
     let mut status = LostStatusScore::default();

@@ -2,8 +2,8 @@ use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkConfirmationParams, LandmarkId, MonobotMotion, MonobotSensor, Observation,
-    SlamParams, observability::ObservabilityRecorder,
+    EkfSlam, KnownIdAssociation, LandmarkConfirmationParams, LandmarkId, LineDistanceSensor, MonobotMotion,
+    Observation, SlamParams, observability::ObservabilityRecorder,
 };
 
 use super::{FixedPositionSensor, WorldReference};
@@ -55,9 +55,9 @@ pub(crate) fn plain_filter() -> SlamParams {
 /// # Errors
 /// Returns an error if the filter refuses a simulated measurement.
 pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: WorldReference) -> Result<MonobotDrive> {
-    let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
-    let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };
-    let camera = FixedPositionSensor(params.external_sigma_m);
+    let sensor = LineDistanceSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_sigma_share };
+    let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_sigma_share };
+    let camera = FixedPositionSensor(params.external_position_sigma_m);
     let mut slam = EkfSlam::new(sensor, plain_filter(), Vector1::new(run.positions[0]))?;
     if reference == WorldReference::Anchor {
         slam.add_anchor(ANCHOR, Vector1::zeros())?;
@@ -74,11 +74,11 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: WorldReference
         }
         let gains = gains(&slam, run.ranges[k].first().copied());
         let seen = observations(run, k, reference);
-        slam.update(&seen, &mut KnownIds)?;
+        slam.update(&seen, &mut KnownIdAssociation)?;
         observability.record(&slam, &seen.iter().filter_map(|seen| seen.label).collect::<Vec<_>>());
-        steps.extend(step(&slam, *true_position, params.landmark_m, gains));
+        steps.extend(step(&slam, *true_position, params.landmark_position_m, gains));
     }
-    Ok(MonobotDrive { steps, true_landmark: params.landmark_m, observability })
+    Ok(MonobotDrive { steps, true_landmark: params.landmark_position_m, observability })
 }
 
 fn observations(run: &MonobotRun, k: usize, reference: WorldReference) -> Vec<Observation<Vector1<f64>>> {
@@ -89,7 +89,7 @@ fn observations(run: &MonobotRun, k: usize, reference: WorldReference) -> Vec<Ob
 }
 
 /// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a measurement of the first landmark alone; `None` before it is in the map.
-fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
+fn gains(slam: &EkfSlam<LineDistanceSensor>, distance: Option<f64>) -> [f64; 2] {
     use wayfix_slam_ekf::LandmarkModel;
     let (Some(distance), true) = (distance, slam.contains(LandmarkId(0))) else { return [f64::NAN; 2] };
     let p = slam.covariance();
@@ -99,7 +99,7 @@ fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
 }
 
 fn step(
-    slam: &EkfSlam<MonobotSensor>,
+    slam: &EkfSlam<LineDistanceSensor>,
     true_position: f64,
     true_landmark: f64,
     gains: [f64; 2],

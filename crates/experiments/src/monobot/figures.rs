@@ -51,13 +51,13 @@ impl MonobotMonteCarlo {
         };
         let (rank, dimension) = self.drives.first().map_or((f64::NAN, f64::NAN), rank);
         vec![
-            Metric::new("start_landmark_error_rms_m", root_mean_square(&first), "m"),
-            Metric::new("end_landmark_error_rms_m", root_mean_square(&end), "m"),
-            Metric::new("end_landmark_sigma_m", root_mean_square(&claimed), "m"),
-            Metric::new("end_on_first_error_slope", slope(&first, &end), ""),
-            Metric::new("bias_over_confidence_half_width", bias, ""),
-            Metric::new("end_landmark_kalman_gain", root_mean_square(&gains), ""),
-            Metric::new("fisher_rank", rank, ""),
+            Metric::new("landmark_error_rms_at_start_m", root_mean_square(&first), "m"),
+            Metric::new("landmark_error_rms_at_end_m", root_mean_square(&end), "m"),
+            Metric::new("estimated_landmark_sigma_at_end_m", root_mean_square(&claimed), "m"),
+            Metric::new("slope_of_end_error_on_start_error", slope(&first, &end), ""),
+            Metric::new("end_landmark_bias_over_ci95_half_width", bias, ""),
+            Metric::new("landmark_kalman_gain_at_end", root_mean_square(&gains), ""),
+            Metric::new("fisher_information_rank", rank, ""),
             Metric::new("state_dimension", dimension, ""),
         ]
     }

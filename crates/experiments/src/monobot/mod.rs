@@ -1,4 +1,4 @@
-//! The experiments of [Andrade-Cetto 2005, Sec. 2.2, Figs. 3-6]: a robot on a line, and the observability of its map.
+//! The experiments of [Andrade-Cetto 2005, Sec. 2.2, Figs. 3–6]: a robot on a line, and the observability of its map.
 
 mod drive;
 mod figures;

@@ -1,7 +1,7 @@
 use super::{MonobotDrive, MonobotStep, first_entry};
 use wayfix_evaluation::plot::{LinePlot, PlotError, PlotSeries, SvgPlot};
 
-/// The four columns of [Andrade-Cetto 2005, Figs. 4-6] for one drive: places, robot error, landmark error, gains.
+/// The four columns of [Andrade-Cetto 2005, Figs. 4–6] for one drive: places, robot error, landmark error, gains.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.

@@ -6,11 +6,11 @@ use wayfix_estimation_traits::SensorModel;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WorldReference {
-    /// None: the standard filter. [Fig. 4]
+    /// None: the standard filter. [Andrade-Cetto 2005, Eq. 17, Fig. 4]
     None,
-    /// A landmark at the origin with known position. [Eq. 20, Fig. 5]
+    /// A landmark at the origin with known position. [Andrade-Cetto 2005, Eqs. 20–22, Fig. 5]
     Anchor,
-    /// A sensor that measures the robot's position. [Eq. 23, Fig. 6]
+    /// A sensor that measures the robot's position. [Andrade-Cetto 2005, Eq. 23, Fig. 6]
     Camera,
 }
 

@@ -1,26 +1,35 @@
 use anyhow::Result;
 
 use super::{
-    CompletedRun, MetricBound, PlannedRun, ReferenceFigures, RegressOptions, SuitePlan,
-    over_seeds::over_seeds, plan::judge,
+    CampaignShard, CompletedRun, MetricBound, PlannedRun, ReferenceFigures, RegressOptions, SeededRun,
+    SuitePlan, cells, over_seeds::over_seeds, plan::judge,
 };
-use wayfix_evaluation::report::{MachineInfo, Report, ReportRun, ReportSuite, commit};
+use wayfix_evaluation::report::{FullReport, MachineInfo, ReportRun, ReportSuite, commit};
 
-/// The report of all runs, in the order of the plans: figures over all seeds, with a verdict for each.
+/// The report of all runs in `done`, in the order of the plans: figures over all seeds, with a verdict for each. Other runs are `pending`.
 ///
 /// # Errors
 /// Returns an error if a plan or the blessed figures cannot be read or written.
-pub fn assemble(options: &RegressOptions, done: &[CompletedRun]) -> Result<Report> {
-    let suites = options.suites.iter().map(|suite| assemble_suite(options, suite, done));
-    Ok(Report {
+pub fn assemble(options: &RegressOptions, shard: CampaignShard, done: &[CompletedRun]) -> Result<FullReport> {
+    let is_pending = |cell: &SeededRun| !done.iter().any(|done| done.cell == *cell);
+    let pending: Vec<SeededRun> = shard.share(cells(options)?).into_iter().filter(is_pending).collect();
+    let suites = options.selection.suites.iter();
+    let suites = suites.map(|suite| assemble_suite(options, suite, done, pending.is_empty()));
+    Ok(FullReport {
         suites: suites.collect::<Result<_>>()?,
+        pending: pending.iter().map(|cell| format!("{} / {}", cell.suite, cell.run)).collect(),
         seed: options.seed,
         commit: commit(&options.fixtures),
         machine: MachineInfo::detect(),
     })
 }
 
-fn assemble_suite(options: &RegressOptions, suite: &str, done: &[CompletedRun]) -> Result<ReportSuite> {
+fn assemble_suite(
+    options: &RegressOptions,
+    suite: &str,
+    done: &[CompletedRun],
+    is_complete: bool,
+) -> Result<ReportSuite> {
     let plan = SuitePlan::read(&options.fixtures, suite)?;
     let of_plan = |planned: &PlannedRun| {
         let is_of = |done: &&CompletedRun| done.cell.suite == suite && done.cell.run == planned.name;
@@ -39,7 +48,7 @@ fn assemble_suite(options: &RegressOptions, suite: &str, done: &[CompletedRun]) 
     let blessed_path = options.fixtures.join(format!("{suite}-figures.json"));
     let stored: Vec<&str> =
         plan.run.iter().filter(|run| run.data.is_none()).map(|run| run.name.as_str()).collect();
-    if options.bless {
+    if options.bless && is_complete {
         ReferenceFigures::write(
             &blessed_path,
             runs.iter().filter(|run| stored.contains(&run.name.as_str())),

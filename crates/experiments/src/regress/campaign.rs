@@ -19,9 +19,11 @@ pub struct SeededRun {
 /// Returns an error if a plan cannot be read.
 pub fn cells(options: &RegressOptions) -> Result<Vec<SeededRun>> {
     let mut cells = Vec::new();
-    for suite in &options.suites {
+    for suite in &options.selection.suites {
         let plan = SuitePlan::read(&options.fixtures, suite)?;
-        for run in plan.run.iter().filter(|run| job(options, run).is_some()) {
+        let is_wanted =
+            |run: &&PlannedRun| options.selection.takes(suite, &run.name) && job(options, run).is_some();
+        for run in plan.run.iter().filter(is_wanted) {
             let cell = |seed| SeededRun { suite: suite.clone(), run: run.name.clone(), seed };
             cells.extend(options.seeds().map(cell));
         }

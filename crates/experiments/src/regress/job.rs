@@ -45,12 +45,17 @@ impl PlannedJob<'_> {
         Ok(data.join(file))
     }
 
+    /// Path of a file beside the plan.
+    pub fn beside_plan(&self, file: &Path) -> PathBuf {
+        self.options.fixtures.join(file)
+    }
+
     /// A file beside the plan, as text.
     ///
     /// # Errors
     /// Returns an error if it cannot be read.
     pub fn read(&self, file: &Path) -> Result<String> {
-        let path = self.options.fixtures.join(file);
+        let path = self.beside_plan(file);
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
     }
 }

@@ -6,19 +6,23 @@
 mod assemble;
 mod blessed;
 mod campaign;
+mod costs;
 mod job;
 mod over_seeds;
 mod part;
 mod plan;
 mod runner;
+mod selection;
 mod shard;
 pub mod suites;
 
 pub use assemble::assemble;
 pub use blessed::ReferenceFigures;
 pub use campaign::{SeededRun, cells};
+pub use costs::{EstimatedTime, RunCosts, calibration_seconds, thread_seconds};
 pub use job::PlannedJob;
 pub use part::{ShardResults, join};
 pub use plan::{MetricBound, PlannedMean, PlannedRun, SuitePlan};
 pub use runner::{CompletedRun, RegressOptions, run_shard};
+pub use selection::RunSelection;
 pub use shard::CampaignShard;

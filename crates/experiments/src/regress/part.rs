@@ -7,8 +7,8 @@ use std::{
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
-use super::{CampaignShard, CompletedRun, RegressOptions, SeededRun, cells};
-use wayfix_evaluation::report::{ReportRun, commit};
+use super::{CampaignShard, CompletedRun, RegressOptions, RunSelection, SeededRun, cells};
+use wayfix_evaluation::report::{ReportRun, commit, replace_file};
 
 /// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,7 @@ struct Campaign {
     commit: Option<String>,
     n_shards: usize,
     suites: Vec<String>,
+    runs: Vec<String>,
     seed: u64,
     n_seeds: u64,
     quick: bool,
@@ -46,12 +47,13 @@ impl ShardResults {
     /// The results of `shard`.
     /// # Errors
     /// Returns an error if a plan cannot be read.
-    pub fn new(options: &RegressOptions, shard: CampaignShard, done: Vec<CompletedRun>) -> Result<Self> {
+    pub fn new(options: &RegressOptions, shard: CampaignShard, done: &[CompletedRun]) -> Result<Self> {
         let campaign = Campaign {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: commit(&options.fixtures),
             n_shards: shard.total(),
-            suites: options.suites.clone(),
+            suites: options.selection.suites.clone(),
+            runs: options.selection.runs.clone(),
             seed: options.seed,
             n_seeds: options.n_seeds,
             quick: options.quick,
@@ -59,8 +61,12 @@ impl ShardResults {
         };
         let svgs = |run: &ReportRun| run.figures.iter().map(|figure| figure.svg.clone()).collect();
         let runs = done
-            .into_iter()
-            .map(|CompletedRun { cell, run }| PartRun { svgs: svgs(&run), cell, run })
+            .iter()
+            .map(|CompletedRun { cell, run }| PartRun {
+                cell: cell.clone(),
+                run: run.clone(),
+                svgs: svgs(run),
+            })
             .collect();
         Ok(Self { campaign, runs })
     }
@@ -71,7 +77,7 @@ impl ShardResults {
     /// Returns an error if it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf> {
         let path = folder.join(FILE);
-        fs::write(&path, serde_json::to_string(self)?)
+        replace_file(&path, serde_json::to_string(self)?)
             .with_context(|| format!("cannot write {}", path.display()))?;
         Ok(path)
     }
@@ -97,6 +103,30 @@ impl ShardResults {
             }
         }
         Ok(part)
+    }
+}
+
+impl ShardResults {
+    /// The runs in `folder` that the same call has finished there before it was interrupted, without those that failed; empty without a file.
+    ///
+    /// # Errors
+    /// Returns an error if the file is of another campaign or not usable.
+    pub fn finished(
+        folder: &Path,
+        options: &RegressOptions,
+        shard: CampaignShard,
+    ) -> Result<Vec<CompletedRun>> {
+        if !folder.join(FILE).exists() {
+            return Ok(Vec::new());
+        }
+        let part = Self::read(folder)?;
+        ensure!(
+            part.campaign == Self::new(options, shard, &[])?.campaign,
+            "{} is of another campaign: the same version, commit, runs, seeds and data are needed to resume",
+            folder.join(FILE).display()
+        );
+        let done = part.runs.into_iter().map(|PartRun { cell, run, .. }| CompletedRun { cell, run });
+        Ok(done.filter(|done| done.run.error.is_none()).collect())
     }
 }
 
@@ -138,7 +168,7 @@ pub fn join(
         );
     }
     let options = RegressOptions {
-        suites: campaign.suites,
+        selection: RunSelection { suites: campaign.suites, runs: campaign.runs },
         fixtures: fixtures.to_owned(),
         data: None,
         out: out.to_owned(),

@@ -129,12 +129,17 @@ impl PlannedMean {
 /// Adds bounds and comparison values to our figures. A bounded figure that was not measured fails as NaN.
 pub(super) fn judge(bounds: &[MetricBound], metrics: &mut Vec<Metric>) {
     for bound in bounds {
-        let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {
+        let found = metrics.iter().position(|metric| metric.name == bound.metric);
+        if found.is_none() && bound.low.is_none() && bound.high.is_none() {
+            continue; // nothing to set the paper's value beside
+        }
+        let index = found.unwrap_or_else(|| {
             metrics.push(Metric::new(&bound.metric, f64::NAN, ""));
             metrics.len() - 1
         });
         let metric = &mut metrics[index];
         metric.paper = bound.paper.or(metric.paper);
+        metric.open = bound.open;
         if bound.open {
             let wanted = [
                 bound.low.map(|low| format!("at least {low}")),

@@ -1,17 +1,21 @@
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
+};
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::{CampaignShard, PlannedJob, SeededRun, SuitePlan, campaign::job, cells, suites};
+use super::{CampaignShard, PlannedJob, RunSelection, SeededRun, SuitePlan, campaign::job, cells, suites};
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::system::Stopwatch;
 
 /// Work to do and output folder.
 #[derive(Clone, Debug)]
 pub struct RegressOptions {
-    /// Suites by name.
-    pub suites: Vec<String>,
+    /// Suites and runs by name.
+    pub selection: RunSelection,
     /// Folder of the stored logs and plans.
     pub fixtures: PathBuf,
     /// Folder of public recordings, if available.
@@ -38,27 +42,28 @@ impl RegressOptions {
 /// A piece of work that is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompletedRun {
-    /// Path of the file.
+    /// Which piece.
     pub cell: SeededRun,
     /// The result, without bounds.
     pub run: ReportRun,
 }
 
-/// Does the shard's part of the work, several pieces at a time, and calls `done` with the name of each run that is finished.
+/// Does the shard's part of the work, several pieces at a time, and shows each run to `done` as soon as it ends.
 ///
-/// The figures depend neither on the number of threads nor on how the work is divided.
+/// The figures depend neither on the number of threads nor on how the work is divided. Pieces in `finished` are not done again.
 ///
 /// # Errors
-/// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
+/// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error, and so is one that
+/// panics: the others go on.
 pub fn run_shard(
     options: &RegressOptions,
     shard: CampaignShard,
-    done: &(impl Fn(&str) + Sync),
-) -> Result<Vec<CompletedRun>> {
+    finished: &[SeededRun],
+    done: &(impl Fn(CompletedRun) + Sync),
+) -> Result<()> {
     fs::create_dir_all(&options.out).with_context(|| format!("cannot create {}", options.out.display()))?;
-    let mine = cells(options)?.into_iter().enumerate().filter(|(index, _)| shard.takes(*index));
-    let mine: Vec<SeededRun> = mine.map(|(_, cell)| cell).collect();
     let plans: Vec<(&str, SuitePlan, suites::Runner)> = options
+        .selection
         .suites
         .iter()
         .map(|suite| Ok((suite.as_str(), SuitePlan::read(&options.fixtures, suite)?, suites::named(suite)?)))
@@ -68,17 +73,23 @@ pub fn run_shard(
         let planned = plan.run.iter().find(|planned| planned.name == cell.run)?;
         let options = RegressOptions { seed: cell.seed, ..options.clone() };
         let run = run_one(&job(&options, planned)?, *runner);
-        done(&run.name);
-        Some(CompletedRun { cell, run })
+        done(CompletedRun { cell, run });
+        Some(())
     };
-    Ok(mine.into_par_iter().filter_map(work).collect())
+    let mut mine = shard.share(cells(options)?);
+    mine.retain(|cell| !finished.contains(cell));
+    mine.into_par_iter().for_each(|cell| {
+        work(cell);
+    });
+    Ok(())
 }
 
 fn run_one(job: &PlannedJob<'_>, run: suites::Runner) -> ReportRun {
     let stopwatch = Stopwatch::start();
-    let run = match run(job) {
-        Ok(run) => run,
-        Err(error) => ReportRun { error: Some(format!("{error:#}")), ..ReportRun::default() },
+    let run = match catch_unwind(AssertUnwindSafe(|| run(job))) {
+        Ok(Ok(run)) => run,
+        Ok(Err(error)) => ReportRun { error: Some(format!("{error:#}")), ..ReportRun::default() },
+        Err(_) => ReportRun { error: Some("a panic, see standard error".to_owned()), ..ReportRun::default() },
     };
     ReportRun { name: job.planned.name.clone(), seconds: stopwatch.elapsed().as_secs_f64(), ..run }
 }

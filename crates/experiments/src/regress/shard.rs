@@ -24,6 +24,12 @@ impl CampaignShard {
         index % self.total == self.number - 1
     }
 
+    /// The pieces of `work` that this shard does.
+    pub fn share<T>(self, work: Vec<T>) -> Vec<T> {
+        let mine = work.into_iter().enumerate().filter(|(index, _)| self.takes(*index));
+        mine.map(|(_, piece)| piece).collect()
+    }
+
     /// Whether there are others.
     pub fn is_part(self) -> bool {
         self.total > 1

@@ -15,8 +15,8 @@ pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
     for (k, method) in Method::ALL.into_iter().enumerate() {
         let rates: Vec<f64> = scores.iter().map(|score| score.rates[k].balanced()).collect();
         let (mean, worst) = (mean(&rates), worst(&rates));
-        let mut mean = Metric::new(format!("{}_rate_mean", method.name()), mean, "");
-        let mut worst = Metric::new(format!("{}_rate_worst", method.name()), worst, "");
+        let mut mean = Metric::new(format!("{}_classification_rate_mean", method.name()), mean, "");
+        let mut worst = Metric::new(format!("{}_classification_rate_worst", method.name()), worst, "");
         match method {
             Method::Joint => {
                 mean = mean.at_least(0.998).bound_from(BOUND);
@@ -32,8 +32,16 @@ pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
         metrics.extend([mean, worst]);
         if matches!(method, Method::Joint | Method::Fixed) {
             let recalls: Vec<f64> = scores.iter().map(|score| score.rates[k].of_ball()).collect();
-            metrics.push(Metric::new(format!("{}_recall_mean", method.name()), self::mean(&recalls), ""));
-            metrics.push(Metric::new(format!("{}_recall_worst", method.name()), self::worst(&recalls), ""));
+            metrics.push(Metric::new(
+                format!("{}_ball_recall_mean", method.name()),
+                self::mean(&recalls),
+                "",
+            ));
+            metrics.push(Metric::new(
+                format!("{}_ball_recall_worst", method.name()),
+                self::worst(&recalls),
+                "",
+            ));
         }
     }
     let gains: Vec<f64> = scores.iter().map(|score| score.joint_gain_nats).collect();

@@ -2,7 +2,7 @@ use std::{fs, path::Path};
 
 use anyhow::{Context, Result};
 use wayfix_color_model::YuvStandard;
-use wayfix_sensor_log::{DecodedImage, EncodedImage, ImageFormat, read_text};
+use wayfix_sensor_log::{DecodedImage, EncodedImage, ImageFileFormat, read_text};
 
 use super::annotation::{BallCore, ObjectBox, read_boxes};
 use super::carpet::Carpet;
@@ -25,7 +25,7 @@ impl VenueImage {
     /// Reads an image and its boxes; `None` if no carpet is visible.
     pub(super) fn read(path: &Path) -> Result<Option<Self>> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let decoded = EncodedImage::new(ImageFormat::Jpeg, bytes)
+        let decoded = EncodedImage::new(ImageFileFormat::Jpeg, bytes)
             .decode_rgb()
             .with_context(|| format!("cannot decode {}", path.display()))?;
         let boxes = path.with_extension("txt");

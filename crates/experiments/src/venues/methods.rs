@@ -24,7 +24,7 @@ impl Method {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
-            Self::Joint => "ball",
+            Self::Joint => "joint_prior",
             Self::Independent => "independent",
             Self::SharedNoise => "shared_noise",
             Self::Oracle => "oracle",

@@ -19,7 +19,7 @@
 //!
 //! Methods, all with one Gaussian a colour:
 //! * `fixed`: the prior of the other venues as it is.
-//! * `ball`, adapted: the carpet is the image's own carpet cluster; the ball follows from it by the *joint* prior of the other venues.
+//! * `joint_prior`, adapted: the carpet is the image's own carpet cluster; the ball follows from it by the *joint* prior of the other venues.
 //! * `independent`: the same, the ball being the prior's, whatever the carpet.
 //! * `shared_noise`: the paper's model: both by the lighting filter, and one diagonal $`ν`$ for pixels of all colours. [Schulz & Fox 2004, Eq. 9]
 //! * `oracle`.

@@ -14,6 +14,7 @@ use std::{
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub(crate) code: i32,
+    pub(crate) stdout: String,
     pub(crate) stderr: String,
 }
 
@@ -26,7 +27,8 @@ pub(crate) fn experiments(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>
     let output = command.args(arguments).env_remove("WAYFIX_DATA").timeout(LONGEST).output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(!stderr.contains("panicked"), "{stderr}");
-    Outcome { code: output.status.code().expect("ended by itself"), stderr }
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    Outcome { code: output.status.code().expect("ended by itself"), stdout, stderr }
 }
 
 /// A folder with files in it, gone after the test.

@@ -2,7 +2,9 @@ use nalgebra::{DMatrix, DVector};
 use wayfix_estimation_traits::LogWeight;
 
 use super::posterior::GroupPosterior;
-use crate::{Gaussian, GaussianError, GroupStatistics, HierarchicalParams, MeanPrior, cholesky, symmetrize};
+use crate::{
+    Gaussian, GaussianError, HierarchicalGaussianParams, MeanPrior, PooledGroupEstimate, cholesky, symmetrize,
+};
 
 /// The expected sufficient statistics of the groups under $`(μ, Σ)`$, summed, and $`\log p(μ, Σ, y)`$.
 pub(super) struct Expectation {
@@ -17,8 +19,8 @@ pub(super) struct Expectation {
 impl Expectation {
     /// The expectation step, with $`θ_j`$ integrated out in closed form.
     pub(super) fn new(
-        groups: &[&GroupStatistics],
-        params: &HierarchicalParams,
+        groups: &[&PooledGroupEstimate],
+        params: &HierarchicalGaussianParams,
         estimate: &Gaussian<DVector<f64>>,
     ) -> Result<Self, GaussianError> {
         let (mean, covariance) = (estimate.mean(), estimate.covariance());
@@ -46,7 +48,7 @@ impl Expectation {
     /// The maximization step: where $`E[\log p(μ, Σ, θ, y)]`$ is highest, a mean and a scatter in which the hyperpriors count as groups.
     pub(super) fn maximize(
         self,
-        params: &HierarchicalParams,
+        params: &HierarchicalGaussianParams,
         estimate: &Gaussian<DVector<f64>>,
     ) -> Result<Gaussian<DVector<f64>>, GaussianError> {
         let Self { n_groups, mut shift, mut scatter, .. } = self;
@@ -71,7 +73,7 @@ impl Expectation {
 }
 
 fn log_hyperprior(
-    params: &HierarchicalParams,
+    params: &HierarchicalGaussianParams,
     mean: &DVector<f64>,
     covariance: &DMatrix<f64>,
 ) -> Result<LogWeight, GaussianError> {

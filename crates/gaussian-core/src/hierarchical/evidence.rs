@@ -8,8 +8,8 @@ use crate::{GaussianError, index_set::complement};
 /// precisions add, so a group of a thousand costs what a group of one does.
 ///
 /// ```
-/// use wayfix_gaussian_core::GroupStatistics;
-/// let mut group = GroupStatistics::new(3);
+/// use wayfix_gaussian_core::PooledGroupEstimate;
+/// let mut group = PooledGroupEstimate::new(3);
 /// group.observe(&[0, 2], &[1.0, 5.0], &[0.1, 0.1])?;
 /// group.observe(&[0], &[3.0], &[0.1])?;
 /// let (mean, variance) = group.estimate(0).unwrap();
@@ -18,7 +18,7 @@ use crate::{GaussianError, index_set::complement};
 /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct GroupStatistics {
+pub struct PooledGroupEstimate {
     coordinates: Vec<Option<Estimate>>,
     log_agreement: LogWeight,
 }
@@ -29,7 +29,7 @@ struct Estimate {
     variance: f64,
 }
 
-impl GroupStatistics {
+impl PooledGroupEstimate {
     /// A group of `dimension` coordinates without observations.
     pub fn new(dimension: usize) -> Self {
         Self { coordinates: vec![None; dimension], log_agreement: 0.0 }
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn pooling_loses_nothing_of_the_density() {
         let (values, variances) = ([1.0, 4.0, 2.5], [0.5, 2.0, 1.0]);
-        let mut group = GroupStatistics::new(1);
+        let mut group = PooledGroupEstimate::new(1);
         for (value, variance) in values.iter().zip(variances) {
             group.observe(&[0], &[*value], &[variance]).unwrap();
         }
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_refused_observation_leaves_the_group_as_it_was() {
-        let mut group = GroupStatistics::new(2);
+        let mut group = PooledGroupEstimate::new(2);
         group.observe(&[0], &[1.0], &[0.0]).unwrap();
         let before = group.clone();
         assert!(group.observe(&[1, 2], &[0.0, 0.0], &[1.0, 1.0]).is_err());

@@ -3,26 +3,27 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::em::Expectation;
 use crate::{
-    Gaussian, GaussianError, GroupStatistics, HierarchicalParams, IterationError, gaussian::check_dimension,
+    Gaussian, GaussianError, HierarchicalGaussianParams, IterationError, PooledGroupEstimate,
+    gaussian::check_dimension,
 };
 
 /// A Gaussian estimated from groups, and the course of the iteration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HierarchicalFit {
+pub struct HierarchicalGaussianFit {
     /// $`N(μ, Σ)`$: the distribution of a new group's $`θ`$.
     pub gaussian: Gaussian<DVector<f64>>,
     /// $`\log p(y, μ, Σ)`$ in nats, at the start and after every iteration; it never falls, but for rounding.
     pub objective: Vec<LogWeight>,
 }
 
-impl HierarchicalFit {
+impl HierarchicalGaussianFit {
     /// How many steps of EM were made.
     pub fn iterations(&self) -> usize {
         self.objective.len() - 1
     }
 }
 
-/// Estimates the distribution of groups from their observations: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10]
+/// Estimates the distribution of groups from their observations: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10, Fig. 2]
 ///
 /// Group $`j`$ has its own $`θ_j ∼ N(μ, Σ)`$ and shows some of its coordinates through noise. The $`θ_j`$ are integrated out in closed
 /// form, and $`\log p(y \mid μ, Σ) + \log p(μ, Σ)`$ climbs by expectation maximization [Dempster, Laird & Rubin 1977], every step of which
@@ -30,13 +31,13 @@ impl HierarchicalFit {
 /// Where much is missing there may be several optima; this finds the one above independent coordinates, from where it starts.
 ///
 /// ```
-/// use wayfix_gaussian_core::{GroupStatistics, HierarchicalParams, fit_hierarchical};
-/// let mut groups = vec![GroupStatistics::new(2); 4];
+/// use wayfix_gaussian_core::{PooledGroupEstimate, HierarchicalGaussianParams, fit_hierarchical};
+/// let mut groups = vec![PooledGroupEstimate::new(2); 4];
 /// for (group, values) in groups.iter_mut().zip([[1.0, 1.0], [3.0, 2.0], [1.0, 2.0], [3.0, 3.0]]) {
 ///     group.observe(&[0, 1], &values, &[0.0, 0.0])?;
 /// }
 /// // Without noise, gaps and hyperpriors: the sample mean and covariance.
-/// let fit = fit_hierarchical(&groups, &HierarchicalParams::default())?;
+/// let fit = fit_hierarchical(&groups, &HierarchicalGaussianParams::default())?;
 /// assert!((fit.gaussian.mean()[1] - 2.0).abs() < 1e-12 && (fit.gaussian.covariance()[(0, 1)] - 0.5).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -46,9 +47,9 @@ impl HierarchicalFit {
 /// hyperprior of $`Σ`$ when there are no more groups than coordinates ([`GaussianError::TooFew`]: the covariance would be singular) or a
 /// covariance becomes singular on the way; without a hyperprior of $`μ`$ when no group shows some coordinate.
 pub fn fit_hierarchical(
-    groups: &[GroupStatistics],
-    params: &HierarchicalParams,
-) -> Result<HierarchicalFit, IterationError<Box<HierarchicalFit>>> {
+    groups: &[PooledGroupEstimate],
+    params: &HierarchicalGaussianParams,
+) -> Result<HierarchicalGaussianFit, IterationError<Box<HierarchicalGaussianFit>>> {
     let groups = check(groups, params)?;
     let mut gaussian = start(&groups, params)?;
     let mut objective = Vec::new();
@@ -57,11 +58,11 @@ pub fn fit_hierarchical(
         objective.push(expectation.objective);
         let left = left_to_gain(&objective);
         if left <= params.tolerance {
-            return Ok(HierarchicalFit { gaussian, objective });
+            return Ok(HierarchicalGaussianFit { gaussian, objective });
         }
         let iterations = objective.len() - 1;
         if iterations >= params.max_iterations {
-            let last = Box::new(HierarchicalFit { gaussian, objective });
+            let last = Box::new(HierarchicalGaussianFit { gaussian, objective });
             return Err(IterationError::NotConverged {
                 what: "hierarchical Gaussian",
                 last,
@@ -75,9 +76,9 @@ pub fn fit_hierarchical(
 
 /// The groups with observations, if they and the hyperpriors together determine a Gaussian.
 fn check<'a>(
-    groups: &'a [GroupStatistics],
-    params: &HierarchicalParams,
-) -> Result<Vec<&'a GroupStatistics>, GaussianError> {
+    groups: &'a [PooledGroupEstimate],
+    params: &HierarchicalGaussianParams,
+) -> Result<Vec<&'a PooledGroupEstimate>, GaussianError> {
     let Some(first) = groups.first() else { return Err(GaussianError::Empty { what: "groups" }) };
     let dimension = first.dimension();
     params.check(dimension)?;
@@ -100,8 +101,8 @@ fn check<'a>(
 
 /// Independent coordinates, each with the moments of its own pooled observations and of the hyperpriors.
 fn start(
-    groups: &[&GroupStatistics],
-    params: &HierarchicalParams,
+    groups: &[&PooledGroupEstimate],
+    params: &HierarchicalGaussianParams,
 ) -> Result<Gaussian<DVector<f64>>, GaussianError> {
     let dimension = groups.first().map_or_else(
         || params.mean_prior.as_ref().map_or(0, |prior| prior.mean.len()),

@@ -8,6 +8,6 @@ mod params;
 mod posterior;
 
 pub use covariance_prior::InverseWishart;
-pub use evidence::GroupStatistics;
-pub use fit::{HierarchicalFit, fit_hierarchical};
-pub use params::{HierarchicalParams, MeanPrior};
+pub use evidence::PooledGroupEstimate;
+pub use fit::{HierarchicalGaussianFit, fit_hierarchical};
+pub use params::{HierarchicalGaussianParams, MeanPrior};

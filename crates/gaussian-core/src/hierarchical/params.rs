@@ -4,7 +4,7 @@ use crate::{GaussianError, InverseWishart, gaussian::check_dimension};
 
 /// How a hierarchical Gaussian is fitted: hyperpriors and when to stop. The default has flat hyperpriors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HierarchicalParams {
+pub struct HierarchicalGaussianParams {
     /// Hyperprior of $`Σ`$; without it there must be more groups than coordinates. Default none: flat.
     pub covariance_prior: Option<InverseWishart>,
     /// Hyperprior of $`μ`$; without it every coordinate must be seen in some group. Default none: flat.
@@ -16,7 +16,7 @@ pub struct HierarchicalParams {
     pub max_iterations: usize,
 }
 
-impl Default for HierarchicalParams {
+impl Default for HierarchicalGaussianParams {
     fn default() -> Self {
         Self { covariance_prior: None, mean_prior: None, tolerance: 1e-9, max_iterations: 10_000 }
     }
@@ -32,7 +32,7 @@ pub struct MeanPrior {
     pub pseudo_groups: f64,
 }
 
-impl HierarchicalParams {
+impl HierarchicalGaussianParams {
     pub(super) fn check(&self, dimension: usize) -> Result<(), GaussianError> {
         if let Some(prior) = &self.covariance_prior {
             check_dimension("covariance prior", dimension, prior.scale().nrows())?;

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 use wayfix_estimation_traits::LogWeight;
 
-use crate::{GaussianError, GroupStatistics, cholesky};
+use crate::{GaussianError, PooledGroupEstimate, cholesky};
 
 /// The posterior of one group's $`θ_j`$ under $`N(μ, Σ)`$, and the log density of what the group observed.
 ///
@@ -15,7 +15,7 @@ pub(super) struct GroupPosterior {
 
 impl GroupPosterior {
     pub(super) fn new(
-        group: &GroupStatistics,
+        group: &PooledGroupEstimate,
         mean: &DVector<f64>,
         covariance: &DMatrix<f64>,
     ) -> Result<Self, GaussianError> {

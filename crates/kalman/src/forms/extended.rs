@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    FilterForm, Innovation,
+    Innovation, KalmanAlgorithm,
     algebra::product::{joseph, propagated_covariance},
     algebra::transport::gaussian_at,
     check,
@@ -16,9 +16,9 @@ use crate::{
 /// Predict: $`x = f(x, u),\; P = F P F^T + Q`$. Update: $`S = H P H^T + R,\; K = P H^T S^{-1},\; x = x ⊞ K y,\;
 /// P = (I - KH) P (I - KH)^T + K R K^T`$. On linear models it is the Kalman filter. [Bar-Shalom et al. 2001, §10.3]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExtendedForm;
+pub struct ExtendedKalmanAlgorithm;
 
-impl<X: Manifold> FilterForm<X> for ExtendedForm
+impl<X: Manifold> KalmanAlgorithm<X> for ExtendedKalmanAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

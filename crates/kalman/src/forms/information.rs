@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    FilterForm, Innovation,
+    Innovation, KalmanAlgorithm,
     algebra::transport::transport,
     check,
     error::Checked,
@@ -15,7 +15,7 @@ use crate::{
 /// Update: $`Λ = Λ + H^T R^{-1} H`$; predict: $`Λ = (F Λ^{-1} F^T + Q)^{-1}`$. [Thrun et al. 2005, Table 3.5]
 /// Everything is solved with Cholesky factors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct InformationForm;
+pub struct InformationFilterAlgorithm;
 
 /// A mean and the inverse of its covariance.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +57,7 @@ where
     }
 }
 
-impl<X: Manifold> FilterForm<X> for InformationForm
+impl<X: Manifold> KalmanAlgorithm<X> for InformationFilterAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

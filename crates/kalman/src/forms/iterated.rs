@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    ExtendedForm, FilterForm, Innovation, KalmanError, algebra::product::joseph,
+    ExtendedKalmanAlgorithm, Innovation, KalmanAlgorithm, KalmanError, algebra::product::joseph,
     algebra::transport::gaussian_at, check, error::Checked, linearize::linearize_sensor,
 };
 
@@ -15,34 +15,34 @@ use crate::{
 /// Each iteration works in the tangent space at its iterate, to which the prior is transformed to first order. [He et al. 2021, §IV]
 /// The reported innovation is that of the prediction, as for every other form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IteratedExtendedForm {
+pub struct IteratedExtendedKalmanAlgorithm {
     /// Maximum number of relinearizations; default 20.
     pub max_iterations: usize,
     /// Converged when no component moves by more than this many prior standard deviations; default 1e-6 (never below $`\sqrt ε`$).
     pub tolerance: f64,
 }
 
-impl Default for IteratedExtendedForm {
+impl Default for IteratedExtendedKalmanAlgorithm {
     fn default() -> Self {
         Self { max_iterations: 20, tolerance: 1e-6 }
     }
 }
 
-impl<X: Manifold> FilterForm<X> for IteratedExtendedForm
+impl<X: Manifold> KalmanAlgorithm<X> for IteratedExtendedKalmanAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     type Belief = Gaussian<X>;
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        ExtendedForm.belief_from(gaussian)
+        ExtendedKalmanAlgorithm.belief_from(gaussian)
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
     where
         M: MotionModel<State = X>,
     {
-        ExtendedForm.predict(belief, motion, control)
+        ExtendedKalmanAlgorithm.predict(belief, motion, control)
     }
 
     fn update<S>(

@@ -7,9 +7,9 @@ mod sequential;
 mod square_root;
 mod unscented;
 
-pub use extended::ExtendedForm;
-pub use information::{InformationBelief, InformationForm};
-pub use iterated::IteratedExtendedForm;
-pub use sequential::SequentialForm;
-pub use square_root::{FactoredGaussian, SquareRootForm};
-pub use unscented::UnscentedForm;
+pub use extended::ExtendedKalmanAlgorithm;
+pub use information::{InformationBelief, InformationFilterAlgorithm};
+pub use iterated::IteratedExtendedKalmanAlgorithm;
+pub use sequential::SequentialUpdateAlgorithm;
+pub use square_root::{FactoredGaussian, SquareRootKalmanAlgorithm};
+pub use unscented::UnscentedKalmanAlgorithm;

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky};
 
 use crate::{
-    ExtendedForm, FilterForm, Innovation,
+    ExtendedKalmanAlgorithm, Innovation, KalmanAlgorithm,
     algebra::transport::gaussian_at,
     check,
     error::Checked,
@@ -14,25 +14,25 @@ use crate::{
 ///
 /// $`R = L L^T`$ decorrelates: the rows of $`L^{-1} H`$ and $`L^{-1} y`$ have independent unit noise, so each is an update of its own,
 /// $`O(m n^2)`$ together and without a gain for the whole. All rows belong to one linearization, hence the same result as
-/// [`ExtendedForm`]. Each scalar step is the stabilized one of [Bierman 1977, §V.2]: the form of Joseph for a rank-one gain.
+/// [`ExtendedKalmanAlgorithm`]. Each scalar step is the stabilized one of [Bierman 1977, §V.2]: the form of Joseph for a rank-one gain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SequentialForm;
+pub struct SequentialUpdateAlgorithm;
 
-impl<X: Manifold> FilterForm<X> for SequentialForm
+impl<X: Manifold> KalmanAlgorithm<X> for SequentialUpdateAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     type Belief = Gaussian<X>;
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        ExtendedForm.belief_from(gaussian)
+        ExtendedKalmanAlgorithm.belief_from(gaussian)
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
     where
         M: MotionModel<State = X>,
     {
-        ExtendedForm.predict(belief, motion, control)
+        ExtendedKalmanAlgorithm.predict(belief, motion, control)
     }
 
     fn update<S>(

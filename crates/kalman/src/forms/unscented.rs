@@ -4,7 +4,10 @@ use wayfix_estimation_traits::{
 };
 use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
 
-use crate::{ExtendedForm, FilterForm, Innovation, algebra::transport::gaussian_at, check, error::Checked};
+use crate::{
+    ExtendedKalmanAlgorithm, Innovation, KalmanAlgorithm, algebra::transport::gaussian_at, check,
+    error::Checked,
+};
 
 /// The unscented filter with additive noise, on any manifold: sigma points instead of Jacobians.
 ///
@@ -12,12 +15,12 @@ use crate::{ExtendedForm, FilterForm, Innovation, algebra::transport::gaussian_a
 /// $`P = \sum_i w_i (χ_i - K ζ_i)(χ_i - K ζ_i)^T + K R K^T`$, the form of Joseph for sigma points, where the textbook's
 /// $`P - K S K^T`$ loses positive definiteness. [Wan & van der Merwe 2000]; means on manifolds as in [Hertzberg et al. 2013].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct UnscentedForm {
+pub struct UnscentedKalmanAlgorithm {
     /// Spread and weights of the sigma points.
     pub params: UnscentedParams,
 }
 
-impl<X: Manifold> FilterForm<X> for UnscentedForm
+impl<X: Manifold> KalmanAlgorithm<X> for UnscentedKalmanAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -25,7 +28,7 @@ where
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         SigmaPoints::new(gaussian, &self.params)?;
-        ExtendedForm.belief_from(gaussian)
+        ExtendedKalmanAlgorithm.belief_from(gaussian)
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>

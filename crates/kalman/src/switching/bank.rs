@@ -4,7 +4,7 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::Gaussian;
 
-use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
+use crate::{Innovation, KalmanAlgorithm, KalmanError, check, error::Checked};
 
 /// A bank of filters for one state under different conditions, of which one is active at a time.
 ///
@@ -15,10 +15,10 @@ use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedForm, LinearMotion, LinearSensor, FilterBank};
+/// use wayfix_kalman::{ExtendedKalmanAlgorithm, LinearMotion, LinearSensor, FilterBank};
 /// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
 /// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
-/// let mut bank = FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let mut bank = FilterBank::new(vec![drift.clone(), drift], ExtendedKalmanAlgorithm, &[brightness(40.0)?, brightness(160.0)?])?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
 /// bank.predict(&None)?;
 /// let candidates = bank.candidates(&sensor, &Vector1::new(150.0))?;
@@ -30,7 +30,7 @@ use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct FilterBank<M: MotionModel, F: FilterForm<M::State>>
+pub struct FilterBank<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -43,14 +43,14 @@ where
 /// The result of a measurement in one filter of a bank: its innovation `I`, whose likelihood is the evidence for it, and the corrected
 /// belief `B`.
 #[derive(Clone, Debug)]
-pub struct ModelUpdate<I, B> {
+pub struct FilterBankUpdate<I, B> {
     /// The innovation under this model.
     pub innovation: I,
     /// The belief after the measurement, if this model is the active one.
     pub belief: B,
 }
 
-impl<M: MotionModel, F: FilterForm<M::State>> FilterBank<M, F>
+impl<M: MotionModel, F: KalmanAlgorithm<M::State>> FilterBank<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -102,14 +102,14 @@ where
         &self,
         sensor: &S,
         measurement: &S::Measurement,
-    ) -> Result<Vec<ModelUpdate<Innovation<M::State, S::Measurement>, F::Belief>>, KalmanError>
+    ) -> Result<Vec<FilterBankUpdate<Innovation<M::State, S::Measurement>, F::Belief>>, KalmanError>
     where
         S: SensorModel<State = M::State>,
         DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
     {
         let candidate = |belief: &F::Belief| {
             let (innovation, posterior) = self.form.update(belief, sensor, measurement, |_| true)?;
-            Ok(ModelUpdate { innovation, belief: posterior.unwrap_or_else(|| belief.clone()) })
+            Ok(FilterBankUpdate { innovation, belief: posterior.unwrap_or_else(|| belief.clone()) })
         };
         self.predicted.iter().map(candidate).collect()
     }

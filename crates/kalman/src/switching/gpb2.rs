@@ -6,21 +6,21 @@ use super::{
     MarkovChain,
     hypotheses::{Hypothesis, SwitchingBelief, merged, model_probabilities},
 };
-use crate::{FilterForm, Innovation, KalmanError, error::Checked};
+use crate::{Innovation, KalmanAlgorithm, KalmanError, error::Checked};
 
 /// The generalized pseudo-Bayesian filter of second order: every pair of last and present model is a hypothesis of its own until after
 /// the update, then those with the same present model are merged.
 ///
 /// $`n^2`$ filter steps where [`ImmFilter`](super::ImmFilter) makes $`n`$, for a posterior that is exact one step longer.
-/// [Bar-Shalom et al. 2001, §11.6.5] Any [`FilterForm`] and any manifold.
+/// [Bar-Shalom et al. 2001, §11.6.5] Any [`KalmanAlgorithm`] and any manifold.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{Gpb2Filter, LinearMotion, LinearSensor, MarkovChain, UnscentedForm};
+/// use wayfix_kalman::{Gpb2Filter, LinearMotion, LinearSensor, MarkovChain, UnscentedKalmanAlgorithm};
 /// let models = vec![LinearMotion::stationary(Matrix1::new(1e-4))?, LinearMotion::stationary(Matrix1::new(1.0))?];
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
-/// let mut filter = Gpb2Filter::new(models, MarkovChain::sticky(2, 0.95)?, UnscentedForm::default(), &prior)?;
+/// let mut filter = Gpb2Filter::new(models, MarkovChain::sticky(2, 0.95)?, UnscentedKalmanAlgorithm::default(), &prior)?;
 /// filter.predict(&None)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
 /// assert_eq!(filter.update(&sensor, &Vector1::new(2.0))?.len(), 4); // one innovation per pair of models
@@ -28,14 +28,14 @@ use crate::{FilterForm, Innovation, KalmanError, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Gpb2Filter<M: MotionModel, F: FilterForm<M::State>>
+pub struct Gpb2Filter<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
     belief: SwitchingBelief<M, F, F::Belief>,
 }
 
-impl<M: MotionModel, F: FilterForm<M::State>> Gpb2Filter<M, F>
+impl<M: MotionModel, F: KalmanAlgorithm<M::State>> Gpb2Filter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LogWeight, Manifold, MotionModel, SensorModel, St
 use wayfix_gaussian_core::{Gaussian, moment_matched};
 
 use super::MarkovChain;
-use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
+use crate::{Innovation, KalmanAlgorithm, KalmanError, check, error::Checked};
 
 /// Models, the chain of switches between them, and hypotheses about which of them is active.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct SwitchingBelief<M, F, B> {
     pub(super) hypotheses: Vec<Hypothesis<B>>,
 }
 
-impl<M: MotionModel, F: FilterForm<M::State>> SwitchingBelief<M, F, F::Belief>
+impl<M: MotionModel, F: KalmanAlgorithm<M::State>> SwitchingBelief<M, F, F::Belief>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

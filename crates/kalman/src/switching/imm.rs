@@ -6,21 +6,21 @@ use super::{
     MarkovChain,
     hypotheses::{Hypothesis, SwitchingBelief, merged},
 };
-use crate::{FilterForm, Innovation, KalmanError, error::Checked};
+use crate::{Innovation, KalmanAlgorithm, KalmanError, error::Checked};
 
 /// The interacting multiple model filter: one belief per model, mixed before every prediction.
 ///
 /// Mix with $`μ_{i|j} ∝ π_{ij} μ_i`$, predict and update each model's belief, weigh by $`μ_j ∝ \bar μ_j N(y_j; 0, S_j)`$.
-/// [Blom & Bar-Shalom 1988] Any [`FilterForm`] and any manifold; mixing matches moments.
+/// [Blom & Bar-Shalom 1988] Any [`KalmanAlgorithm`] and any manifold; mixing matches moments.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedForm, ImmFilter, LinearMotion, LinearSensor, MarkovChain};
+/// use wayfix_kalman::{ExtendedKalmanAlgorithm, ImmFilter, LinearMotion, LinearSensor, MarkovChain};
 /// let still = LinearMotion::stationary(Matrix1::new(1e-4))?;
 /// let lively = LinearMotion::stationary(Matrix1::new(1.0))?;
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
-/// let mut filter = ImmFilter::new(vec![still, lively], MarkovChain::sticky(2, 0.95)?, ExtendedForm, &prior)?;
+/// let mut filter = ImmFilter::new(vec![still, lively], MarkovChain::sticky(2, 0.95)?, ExtendedKalmanAlgorithm, &prior)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
 /// for z in [0.0, 1.1, -0.6, 0.8] {
 ///     filter.predict(&None)?;
@@ -30,14 +30,14 @@ use crate::{FilterForm, Innovation, KalmanError, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct ImmFilter<M: MotionModel, F: FilterForm<M::State>>
+pub struct ImmFilter<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
     belief: SwitchingBelief<M, F, F::Belief>,
 }
 
-impl<M: MotionModel, F: FilterForm<M::State>> ImmFilter<M, F>
+impl<M: MotionModel, F: KalmanAlgorithm<M::State>> ImmFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

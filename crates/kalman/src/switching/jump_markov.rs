@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LogWeight, Manifold, MotionModel, SensorModel, St
 use wayfix_gaussian_core::Gaussian;
 
 use super::{FilterBank, MarkovChain, hypotheses::normalized};
-use crate::{FilterForm, KalmanError, check, error::Checked};
+use crate::{KalmanAlgorithm, KalmanError, check, error::Checked};
 
 /// Jump-Markov model selection: a [`FilterBank`] whose active filter follows a Markov chain.
 ///
@@ -16,10 +16,10 @@ use crate::{FilterForm, KalmanError, check, error::Checked};
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedForm, JumpMarkovFilter, JumpMarkovFilterParams, LinearMotion, LinearSensor, MarkovChain, FilterBank};
+/// use wayfix_kalman::{ExtendedKalmanAlgorithm, JumpMarkovFilter, JumpMarkovFilterParams, LinearMotion, LinearSensor, MarkovChain, FilterBank};
 /// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
 /// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
-/// let bank = FilterBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let bank = FilterBank::new(vec![drift.clone(), drift], ExtendedKalmanAlgorithm, &[brightness(40.0)?, brightness(160.0)?])?;
 /// let mut light = JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95)?, JumpMarkovFilterParams::default())?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
 /// for seen in [Some(152.0), Some(149.0), None, Some(38.0)] {
@@ -31,7 +31,7 @@ use crate::{FilterForm, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone)]
-pub struct JumpMarkovFilter<M: MotionModel, F: FilterForm<M::State>>
+pub struct JumpMarkovFilter<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -47,18 +47,18 @@ pub struct JumpMarkovFilterParams {
     /// Histories kept; default 8, 1 selects greedily.
     pub n_histories: usize,
     /// Number of measurements for which a history stores its models; default 256.
-    pub n_remembered_models: usize,
+    pub n_recorded_models: usize,
 }
 
 impl Default for JumpMarkovFilterParams {
     fn default() -> Self {
-        Self { n_histories: 8, n_remembered_models: 256 }
+        Self { n_histories: 8, n_recorded_models: 256 }
     }
 }
 
 /// The active models at the measurements so far, and the belief under that assumption.
 #[derive(Clone)]
-struct History<M: MotionModel, F: FilterForm<M::State>>
+struct History<M: MotionModel, F: KalmanAlgorithm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -77,7 +77,7 @@ struct Extension<B> {
     log_weight: LogWeight,
 }
 
-impl<M: MotionModel + Clone, F: FilterForm<M::State> + Clone> JumpMarkovFilter<M, F>
+impl<M: MotionModel + Clone, F: KalmanAlgorithm<M::State> + Clone> JumpMarkovFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -219,7 +219,7 @@ where
         history.active.fill(0.0);
         history.active[extension.model] = 1.0;
         history.path.push(extension.model);
-        let surplus = history.path.len().saturating_sub(self.params.n_remembered_models);
+        let surplus = history.path.len().saturating_sub(self.params.n_recorded_models);
         history.path.drain(..surplus);
         history.probability = probability;
         history

@@ -7,7 +7,7 @@ mod imm;
 mod jump_markov;
 mod markov_chain;
 
-pub use bank::{FilterBank, ModelUpdate};
+pub use bank::{FilterBank, FilterBankUpdate};
 pub use gpb2::Gpb2Filter;
 pub use imm::ImmFilter;
 pub use jump_markov::{JumpMarkovFilter, JumpMarkovFilterParams};

@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 use super::WallSegment;
 use crate::{LineEstimate, LineExtractionError};
 
-/// A predicted wall: its search band, and the segments compatible with it [Andrade-Cetto, Fig. 1a].
+/// A predicted wall: its search band, and the segments compatible with it [Andrade-Cetto 2005, Fig. 1a].
 ///
 /// Everything is in the sensor's frame; predicting a wall of a map there, with the robot's uncertainty in the covariance, is the caller's.
 ///

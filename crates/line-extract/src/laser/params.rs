@@ -31,7 +31,7 @@ pub struct LineExtractionParams {
     /// A piece with a point farther off than this, metres, is split. Default: 0.05, five times the noise.
     pub split_distance_m: f64,
     /// Points at the ends of a piece farther from its line than this number of their standard deviations are dropped. Default: 3.
-    pub end_gate_sigma: f64,
+    pub end_point_gate_sigmas: f64,
     /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
     pub merge_gate: f64,
     /// Standard deviation of the bulge of a straight wall, metres. Neighbouring pieces with a common curvature beyond that and the noise
@@ -50,7 +50,7 @@ pub struct LineExtractionParams {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum SplitMethod {
-    /// By the distance to the line through the end points, as [Andrade-Cetto, Table 1].
+    /// By the distance to the line through the end points, as [Andrade-Cetto 2005, Table 1].
     #[default]
     EndPointFit,
     /// By the distance to the line fitted to all points [Pavlidis & Horowitz 1974].
@@ -65,7 +65,7 @@ impl Default for LineExtractionParams {
             max_missing_beams: 2,
             split_method: SplitMethod::default(),
             split_distance_m: 0.05,
-            end_gate_sigma: 3.0,
+            end_point_gate_sigmas: 3.0,
             merge_gate: 13.8,
             bulge_sigma_m: 0.01,
             merge_gap_m: 0.3,
@@ -94,7 +94,12 @@ impl LineExtractionParams {
             ),
             ("breakpoint_angle_rad", angle, angle > 0.0 && angle < FRAC_PI_2, "in (0, π/2)"),
             ("split_distance_m", self.split_distance_m, positive(self.split_distance_m), "positive"),
-            ("end_gate_sigma", self.end_gate_sigma, positive(self.end_gate_sigma), "positive"),
+            (
+                "end_point_gate_sigmas",
+                self.end_point_gate_sigmas,
+                positive(self.end_point_gate_sigmas),
+                "positive",
+            ),
             ("merge_gate", self.merge_gate, not_negative(self.merge_gate), "not negative"),
             ("bulge_sigma_m", self.bulge_sigma_m, not_negative(self.bulge_sigma_m), "not negative"),
             ("merge_gap_m", self.merge_gap_m, not_negative(self.merge_gap_m), "not negative"),

@@ -75,7 +75,8 @@ impl Piece {
         let fits = |k: usize| {
             let p = &points.at[k];
             let off = normal.dot(p) - line.rho();
-            off * off * noise.weight(p, &normal) <= params.end_gate_sigma * params.end_gate_sigma
+            off * off * noise.weight(p, &normal)
+                <= params.end_point_gate_sigmas * params.end_point_gate_sigmas
         };
         range.start = range.clone().find(|k| fits(*k))?;
         range.end = range.clone().rev().find(|k| fits(*k))? + 1;

@@ -10,7 +10,7 @@ mod scan;
 mod simplifier;
 mod split;
 
-pub use classic::{PointDistance, douglas_peucker};
+pub use classic::{PointDistanceReference, douglas_peucker};
 pub use simplifier::{PolylineSimplifier, simplify};
 
 pub(crate) use split::first_max;

@@ -13,7 +13,8 @@ const SCAN_BUDGET: usize = 2;
 /// Cost of an exact comparison in fast tests: about 100 ns.
 const EXACT_COMPARISON_COST: usize = 100;
 
-/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`PointDistance::Line`](crate::PointDistance), in $`O(n \log^2 n)`$ for every chain.
+/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`PointDistanceReference::Line`](crate::PointDistanceReference), in $`O(n \log^2 n)`$ for every
+/// chain. [Andrade-Cetto 2005, Tables 1, 2]
 ///
 /// While splits are balanced, a test of every point is fastest. After $`2 n \log_2 n`$ tests, convex
 /// hulls of the chain's blocks are built for the rest: the farthest point of a block is a vertex of its hull, found by bisection. This is the
@@ -22,13 +23,13 @@ const EXACT_COMPARISON_COST: usize = 100;
 ///
 /// ```
 /// use nalgebra::Vector2;
-/// use wayfix_line_extract::{PointDistance, douglas_peucker, simplify};
+/// use wayfix_line_extract::{PointDistanceReference, douglas_peucker, simplify};
 ///
 /// // Each split takes one point off: looking at all of them every time would take 5e9 looks.
 /// let tooth = |k: i32| if k % 2 == 0 { 0.0 } else { 1e3 - 1e-2 * f64::from(k) };
 /// let zigzag: Vec<_> = (0..100_000).map(|k| Vector2::new(f64::from(k), tooth(k))).collect();
 /// assert_eq!(simplify(&zigzag, 1e-6)?.len(), zigzag.len());
-/// assert_eq!(simplify(&zigzag[..500], 400.0)?, douglas_peucker(&zigzag[..500], 400.0, PointDistance::Line)?);
+/// assert_eq!(simplify(&zigzag[..500], 400.0)?, douglas_peucker(&zigzag[..500], 400.0, PointDistanceReference::Line)?);
 /// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 ///

@@ -5,5 +5,5 @@ mod params;
 mod pursuit;
 
 pub use differential::DifferentialDrive;
-pub use params::{SlipParams, WheeledRobotParams};
+pub use params::{WheelSlipParams, WheeledRobotParams};
 pub use pursuit::PurePursuit;

@@ -22,12 +22,12 @@ pub struct WheeledRobotParams {
     /// Lookahead of the driver on the route, m. Default 0.5.
     pub lookahead_m: f64,
     /// Slip of the wheels. Default none.
-    pub slip: SlipParams,
+    pub slip: WheelSlipParams,
 }
 
 /// Share of a wheel's rotation lost to slip: a Gauss-Markov process per wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlipParams {
+pub struct WheelSlipParams {
     /// Standard deviation of the share. Default 0.
     pub slip_sigma: f64,
     /// Correlation time, seconds. Default 1.
@@ -48,12 +48,12 @@ impl Default for WheeledRobotParams {
             wheel_separation_error: 0.0,
             motor_lag_s: 0.1,
             lookahead_m: 0.5,
-            slip: SlipParams::default(),
+            slip: WheelSlipParams::default(),
         }
     }
 }
 
-impl Default for SlipParams {
+impl Default for WheelSlipParams {
     fn default() -> Self {
         Self { slip_sigma: 0.0, correlation_time_s: 1.0, wheel_correlation: 0.0 }
     }

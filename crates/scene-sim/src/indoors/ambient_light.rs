@@ -12,22 +12,22 @@ const STRAY: [f32; 3] = [0.12; 3];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientLightParams {
     /// Standard deviation of the logarithm of the daylight: clouds. Default 0.35.
-    pub daylight_sigma: f64,
+    pub daylight_log_sigma: f64,
     /// Correlation time of the daylight, seconds. Default 600.
     pub daylight_correlation_s: f64,
     /// Standard deviation of the logarithm of each group of lamps from one drive to the next: some fail, some are new. Default 0.1.
-    pub lamp_sigma: f64,
+    pub lamp_log_sigma_between_drives: f64,
     /// Mean time between two changes by people who switch lamps and draw curtains, s; `None` for no changes. Default `None`.
-    pub mean_switching_interval_s: Option<f64>,
+    pub mean_lamp_switching_s: Option<f64>,
 }
 
 impl Default for AmbientLightParams {
     fn default() -> Self {
         Self {
-            daylight_sigma: 0.35,
+            daylight_log_sigma: 0.35,
             daylight_correlation_s: 600.0,
-            lamp_sigma: 0.1,
-            mean_switching_interval_s: None,
+            lamp_log_sigma_between_drives: 0.1,
+            mean_lamp_switching_s: None,
         }
     }
 }
@@ -38,10 +38,10 @@ impl AmbientLightParams {
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimulationError> {
-        check::not_negative("σ of the daylight", self.daylight_sigma)?;
+        check::not_negative("σ of the daylight", self.daylight_log_sigma)?;
         check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
-        check::not_negative("σ of the lamps", self.lamp_sigma)?;
-        check::positive("time between switchings (s)", self.mean_switching_interval_s.unwrap_or(1.0))
+        check::not_negative("σ of the lamps", self.lamp_log_sigma_between_drives)?;
+        check::positive("time between switchings (s)", self.mean_lamp_switching_s.unwrap_or(1.0))
     }
 }
 
@@ -68,7 +68,7 @@ impl AmbientLight {
         streams: &mut RandomStreams,
     ) -> Self {
         let rng = streams.of(RandomStreamPurpose::Lamps);
-        let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * normal(rng)));
+        let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_log_sigma_between_drives * normal(rng)));
         let clouds = GaussMarkovProcess::new(params.daylight_correlation_s);
         let mut ambient_light =
             Self { params, lamps: lamps.collect(), clouds, ..Self::nominal(0, n_curtains) };
@@ -91,10 +91,10 @@ impl AmbientLight {
     /// Lets time pass.
     pub(super) fn advance(&mut self, seconds: f64, streams: &mut RandomStreams) {
         let clouds = self.clouds.advance(seconds, streams.of(RandomStreamPurpose::Daylight));
-        self.daylight = libm::exp(self.params.daylight_sigma * clouds);
+        self.daylight = libm::exp(self.params.daylight_log_sigma * clouds);
         let rng = streams.of(RandomStreamPurpose::Switching);
         let share =
-            self.params.mean_switching_interval_s.map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
+            self.params.mean_lamp_switching_s.map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
         if chance(share, rng) {
             self.switch(rng);
         }

@@ -23,7 +23,7 @@ pub struct OmniCameraParams {
     /// Standard deviation of the noise of a pixel, grey values. Default 2.
     pub pixel_noise_sigma: f64,
     /// Share of a change of light that the automatic exposure compensates, 0 to 1. Default 0.8.
-    pub exposure_control: f64,
+    pub exposure_compensation_share: f64,
 }
 
 impl Default for OmniCameraParams {
@@ -36,7 +36,7 @@ impl Default for OmniCameraParams {
             height_m: 1.2,
             rays_per_pixel: [2, 2],
             pixel_noise_sigma: 2.0,
-            exposure_control: 0.8,
+            exposure_compensation_share: 0.8,
         }
     }
 }
@@ -67,6 +67,6 @@ impl OmniCameraParams {
             check::count("rays of a pixel", rays, 16)?;
         }
         check::not_negative("noise of the camera (grey values)", self.pixel_noise_sigma)?;
-        check::share("share of the light that the exposure takes back", self.exposure_control)
+        check::share("share of the light that the exposure takes back", self.exposure_compensation_share)
     }
 }

@@ -2,7 +2,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::RecordData;
 
 use super::ambient_light::AmbientLight;
-use super::params::IndoorParams;
+use super::params::IndoorDriveParams;
 use super::rooms::building::Building;
 use super::rooms::crowd::Crowd;
 use super::view::ViewRenderer;
@@ -33,11 +33,11 @@ pub struct IndoorDriveStep {
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams}, random::RandomStreams};
+/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorDriveParams, RetailStore, RetailStoreParams}, random::RandomStreams};
 /// let mut rng = ChaCha8Rng::seed_from_u64(1);
 /// let building = RetailStore::draw(RetailStoreParams::area(), &mut rng)?.building();
 /// let route = building.aisles().tour(30.0, &mut rng)?;
-/// let drive = IndoorDrive::new(&building, route, IndoorParams::default(), RandomStreams::new(rng))?;
+/// let drive = IndoorDrive::new(&building, route, IndoorDriveParams::default(), RandomStreams::new(rng))?;
 /// let steps: Vec<_> = drive.collect();
 /// let odometry: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.translation.norm()).sum();
 /// assert!(odometry > 25.0 && steps[0].view.rgb.len() == 3 * 120 * 20);
@@ -46,7 +46,7 @@ pub struct IndoorDriveStep {
 pub struct IndoorDrive<'a> {
     building: &'a Building,
     route: Route,
-    params: IndoorParams,
+    params: IndoorDriveParams,
     streams: RandomStreams,
     robot: DifferentialDrive,
     driver: PurePursuit,
@@ -66,18 +66,18 @@ impl<'a> IndoorDrive<'a> {
     pub fn new(
         building: &'a Building,
         route: Route,
-        params: IndoorParams,
+        params: IndoorDriveParams,
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate()?;
-        let step_m = params.drive.speed_mps * f64::from(params.view_period_ms) * 1e-3;
+        let step_m = params.robot.speed_mps * f64::from(params.view_period_ms) * 1e-3;
         check::positive("way between two views (m)", step_m)?;
         let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(RandomStreamPurpose::Crowd));
         let ambient_light =
             AmbientLight::new(params.ambient_light, building.n_lamps, building.n_curtains, &mut streams);
         Ok(Self {
             building,
-            robot: DifferentialDrive::new(params.drive, route.at(0.0))?,
+            robot: DifferentialDrive::new(params.robot, route.at(0.0))?,
             driver: PurePursuit::default(),
             wheels: WheelOdometry::new(params.odometry())?,
             view_renderer: ViewRenderer::new(params.camera)?,
@@ -93,7 +93,7 @@ impl<'a> IndoorDrive<'a> {
 
     fn advance(&mut self, seconds: f64) {
         let pose = self.robot.pose();
-        let (linear, angular) = self.driver.command(seconds, &self.route, &pose, &self.params.drive);
+        let (linear, angular) = self.driver.command(seconds, &self.route, &pose, &self.params.robot);
         self.robot.step(seconds, linear, angular, &mut self.streams);
         self.milliseconds += STEP_MS;
     }

@@ -23,7 +23,7 @@ impl ImagePipeline {
         let tone = |i: usize| 255.0 * libm::powf(i as f32 / (N_TONES - 1) as f32, 1.0 / 2.2);
         Self {
             noise: params.pixel_noise_sigma,
-            control: params.exposure_control as f32,
+            control: params.exposure_compensation_share as f32,
             tones: (0..N_TONES).map(tone).collect(),
         }
     }

@@ -26,7 +26,7 @@ pub use ambient_light::AmbientLightParams;
 pub use camera::OmniCameraParams;
 pub use drive::{IndoorDrive, IndoorDriveStep};
 pub use mirror::MirrorCamera;
-pub use params::{IndoorParams, calibrated_robot};
+pub use params::{IndoorDriveParams, calibrated_robot};
 pub use rooms::aisles::{AisleCrossing, AisleGrid};
 pub use rooms::building::Building;
 pub use rooms::lab::Laboratory;

@@ -1,16 +1,16 @@
 use rand::Rng;
 
 use super::{AmbientLightParams, OmniCameraParams};
-use crate::drive::{SlipParams, WheeledRobotParams};
+use crate::drive::{WheelSlipParams, WheeledRobotParams};
 use crate::random::deviate::normal;
 use crate::sensor::{OdometryEncoding, WheelOdometryParams};
 use crate::{SimulationError, check};
 
 /// A robot in a building, and the people around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IndoorParams {
+pub struct IndoorDriveParams {
     /// The robot; [`calibrated_robot`] draws one. Default: 0.5 m/s, wheels exactly as built, slip of 0.1 %.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Time between two views, a multiple of 10 ms. Default 500: a step of 0.25 m.
     pub view_period_ms: u32,
     /// The camera.
@@ -21,10 +21,10 @@ pub struct IndoorParams {
     pub n_people: usize,
 }
 
-impl Default for IndoorParams {
+impl Default for IndoorDriveParams {
     fn default() -> Self {
         Self {
-            drive: robot([0.0; 2]),
+            robot: robot([0.0; 2]),
             view_period_ms: 500,
             camera: OmniCameraParams::default(),
             ambient_light: AmbientLightParams::default(),
@@ -33,13 +33,13 @@ impl Default for IndoorParams {
     }
 }
 
-impl IndoorParams {
+impl IndoorDriveParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimulationError> {
-        self.drive.validate()?;
+        self.robot.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
         check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
         self.camera.validate()?;
@@ -50,10 +50,10 @@ impl IndoorParams {
     /// Encoders with nominal parameters.
     pub(super) fn odometry(&self) -> WheelOdometryParams {
         WheelOdometryParams {
-            kind: OdometryEncoding::Increment,
+            encoding: OdometryEncoding::Increment,
             period_ms: self.view_period_ms,
-            wheel_radius_m: self.drive.wheel_radius_m,
-            wheel_separation_m: self.drive.wheel_separation_m,
+            wheel_radius_m: self.robot.wheel_radius_m,
+            wheel_separation_m: self.robot.wheel_separation_m,
             ..WheelOdometryParams::default()
         }
     }
@@ -75,7 +75,7 @@ fn robot([travel, heading_per_m]: [f64; 2]) -> WheeledRobotParams {
         wheel_radius_m: 0.1,
         left_radius_error: travel - difference,
         right_radius_error: travel + difference,
-        slip: SlipParams { slip_sigma: 1e-3, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+        slip: WheelSlipParams { slip_sigma: 1e-3, correlation_time_s: 1.0, wheel_correlation: 0.5 },
         ..WheeledRobotParams::default()
     }
 }

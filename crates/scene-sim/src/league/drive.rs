@@ -79,10 +79,13 @@ impl LeagueDrive {
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
     pub fn in_venue(
         params: &LeagueParams,
-        venue: LeagueVenue,
+        mut venue: LeagueVenue,
         mut streams: RandomStreams,
     ) -> Result<Self, SimulationError> {
         params.validate(&venue.camera)?;
+        venue.camera.exposure_mode = params.exposure_mode;
+        let grey = |paint: &LinearRgb| LinearRgb::repeat(paint.mean() * (1.0 - params.paint_chroma));
+        venue.paints = venue.paints.map(|paint| grey(&paint) + paint * params.paint_chroma);
         let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;
         let camera_simulator = CameraSimulator::new(venue.camera)?;
         let drift = GaussMarkovProcess::new(venue.camera.white_balance_correlation_s);
@@ -114,7 +117,7 @@ impl LeagueDrive {
 
     fn kidnap(&mut self) {
         let from = self.robot.pose().translation;
-        let margin = self.params.robot.walk.board_margin_m;
+        let margin = self.params.robot.walk.min_board_distance_m;
         let rng = self.streams.of(RandomStreamPurpose::Kidnap);
         let mut to = Pose2::new(0.0, 0.0, 0.0);
         // The field is 4.2 m long: most places are far enough.
@@ -135,7 +138,7 @@ impl LeagueDrive {
 
     fn balance(&mut self) -> LinearRgb {
         let period_s = f64::from(self.params.period_ms) * 1e-3;
-        let sigma = self.venue.camera.white_balance_drift;
+        let sigma = self.venue.camera.white_balance_drift_sigma;
         let rng = self.streams.of(RandomStreamPurpose::WhiteBalance);
         let [red, blue] = self.balance.each_mut().map(|x| libm::exp(sigma * x.advance(period_s, rng)));
         LinearRgb::new(red, 1.0, blue)

@@ -25,15 +25,15 @@ pub struct Lamp {
 /// A lamp gives $`E = I \cos θ_o \cos θ_i / d^2`$ (a downward Lambert emitter and a Lambert surface); there are no shadows.
 /// ```
 /// use wayfix_estimation_traits::nalgebra::Vector3;
-/// use wayfix_scene_sim::league::{Lamp, Lamps, LightField, LinearRgb};
+/// use wayfix_scene_sim::league::{Lamp, LampLight, LightField, LinearRgb};
 /// let lamp = Lamp { position: Vector3::new(0.0, 0.0, 2.0), strength: LinearRgb::repeat(4.0) };
-/// let light = Lamps { lamps: vec![lamp], ambient: LinearRgb::zeros(), bounce: LinearRgb::zeros() };
+/// let light = LampLight { lamps: vec![lamp], ambient: LinearRgb::zeros(), bounce: LinearRgb::zeros() };
 /// let below = light.irradiance(&Vector3::zeros(), &Vector3::z());
 /// let aside = light.irradiance(&Vector3::new(2.0, 0.0, 0.0), &Vector3::z());
 /// assert!((below.x - 1.0).abs() < 1e-15 && (aside.x - 0.25).abs() < 1e-15); // cos⁴ 45°
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Lamps {
+pub struct LampLight {
     /// The lamps.
     pub lamps: Vec<Lamp>,
     /// Ambient irradiance from above.
@@ -42,7 +42,7 @@ pub struct Lamps {
     pub bounce: LinearRgb,
 }
 
-impl LightField for Lamps {
+impl LightField for LampLight {
     fn irradiance(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> LinearRgb {
         let up = 0.5 + 0.5 * normal.z;
         let around = self.ambient * up + self.bounce * (1.0 - up);

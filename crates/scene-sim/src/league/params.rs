@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Pose2;
 
-use super::{CameraParams, LampSetting, LeggedRobotParams};
+use super::{CameraParams, ExposureMode, LampSetting, LeggedRobotParams};
 use crate::{SimulationError, check};
 
 /// One drive over the field with the camera running.
@@ -22,8 +22,12 @@ pub struct LeagueParams {
     pub robot: LeggedRobotParams,
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
     pub with_unmapped_objects: bool,
+    /// Of the venue's camera. Default [`ExposureMode::Manual`].
+    pub exposure_mode: ExposureMode,
+    /// Chroma of the venue's paints as a share of what is usual, up to 1; at 0 all paints are grey. Default 1.
+    pub paint_chroma: f64,
     /// Number of labelled frames in the log. Default 12.
-    pub n_labelled: usize,
+    pub n_labelled_frames: usize,
 }
 
 impl Default for LeagueParams {
@@ -37,7 +41,9 @@ impl Default for LeagueParams {
             kidnap_frames: Vec::new(),
             robot: LeggedRobotParams::default(),
             with_unmapped_objects: true,
-            n_labelled: 12,
+            exposure_mode: ExposureMode::default(),
+            paint_chroma: 1.0,
+            n_labelled_frames: 12,
         }
     }
 }
@@ -46,6 +52,7 @@ impl LeagueParams {
     /// Validates the parameters for this camera; those of the robot are validated when it is created.
     pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimulationError> {
         check::count("frames", self.n_frames, 100_000)?;
+        check::share("chroma of the paints", self.paint_chroma)?;
         let (exposure, period) = (f64::from(camera.exposure_ms), f64::from(self.period_ms));
         check::above("period of the frames (ms)", period, exposure + 2.0, "2 ms longer than the exposure")?;
         check::at_most("period of the frames (ms)", period, 60_000.0, "at most 60 000")?;

@@ -13,20 +13,20 @@ impl LeagueParams {
     /// The log of a drive, in time order: camera info at the start; before each frame but the first an odometry increment; then, at the
     /// stamp of the frame, true pose, camera mount, true labels (of some frames) and picture.
     ///
-    /// The log is cut into [`n_labelled`](Self::n_labelled) stretches, and in each the first frame with the most map colours in view
+    /// The log is cut into [`n_labelled_frames`](Self::n_labelled_frames) stretches, and in each the first frame with the most map colours in view
     /// (40 pixels at least) gets labels, as a manual choice of images would.
     ///
     /// # Errors
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
     pub fn simulate(&self, streams: RandomStreams) -> Result<Vec<Record>, SimulationError> {
-        check::count("labelled frames", self.n_labelled, self.n_frames)?;
+        check::count("labelled frames", self.n_labelled_frames, self.n_frames)?;
         let drive = LeagueDrive::new(self, streams)?;
         let camera_info = record(0, RecordData::CameraInfo(camera_info(&drive)));
         let quality = drive.venue().camera.jpeg_quality;
         let mut frames = Vec::with_capacity(self.n_frames);
-        let mut labelled: Vec<Option<Labelled>> = vec![None; self.n_labelled];
+        let mut labelled: Vec<Option<Labelled>> = vec![None; self.n_labelled_frames];
         for (idx, frame) in drive.enumerate() {
-            if let Some(best) = labelled.get_mut(idx * self.n_labelled / self.n_frames) {
+            if let Some(best) = labelled.get_mut(idx * self.n_labelled_frames / self.n_frames) {
                 consider(idx, &frame.picture, best);
             }
             frames.push(records_of(&frame, quality)?);

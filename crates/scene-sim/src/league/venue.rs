@@ -1,7 +1,7 @@
 use nalgebra::Vector3;
 use rand::Rng;
 
-use super::{CameraParams, HallBackdrop, Lamp, Lamps, LinearRgb, N_COLORS, black_body};
+use super::{CameraParams, HallBackdrop, Lamp, LampLight, LinearRgb, N_COLORS, black_body};
 use crate::SimulationError;
 use crate::random::deviate::{below, chance, normal, uniform};
 
@@ -17,9 +17,9 @@ pub struct LeagueVenue {
     /// Diffuse reflectance of each map colour.
     pub paints: [LinearRgb; N_COLORS],
     /// Everyday light.
-    pub bright: Lamps,
+    pub bright: LampLight,
     /// All lamps off but one.
-    pub dark: Lamps,
+    pub dark: LampLight,
     /// Surroundings of the field.
     pub hall: HallBackdrop,
     /// The camera; set for the everyday light and never changed.
@@ -73,7 +73,7 @@ impl LeagueVenue {
     }
 
     /// The lamps that are on.
-    pub fn light(&self, lighting: LampSetting) -> &Lamps {
+    pub fn light(&self, lighting: LampSetting) -> &LampLight {
         match lighting {
             LampSetting::Bright => &self.bright,
             LampSetting::Dark => &self.dark,
@@ -116,11 +116,11 @@ fn lamps<R: Rng + ?Sized>(kelvin: f64, rng: &mut R) -> Vec<Lamp> {
 
 /// Luminance of the carpet's light, averaged over the field.
 fn mean_luminance(lamps: &[Lamp]) -> f64 {
-    let direct = mean_irradiance(&Lamps { lamps: lamps.to_vec(), ..Lamps::default() });
+    let direct = mean_irradiance(&LampLight { lamps: lamps.to_vec(), ..LampLight::default() });
     0.2126 * direct.x + 0.7152 * direct.y + 0.0722 * direct.z
 }
 
-fn mean_irradiance(light: &Lamps) -> LinearRgb {
+fn mean_irradiance(light: &LampLight) -> LinearRgb {
     use super::LightField;
     let along = |half: f64| [-0.8, -0.4, 0.0, 0.4, 0.8].map(|share| share * half);
     let mut sum = LinearRgb::zeros();
@@ -133,8 +133,8 @@ fn mean_irradiance(light: &Lamps) -> LinearRgb {
 }
 
 /// Adds the light reflected by walls and ceiling (the share `around` of the direct light), that of the windows, and that reflected by the carpet.
-fn lighting(lamps: Vec<Lamp>, paints: &[LinearRgb; N_COLORS], around: f64, window: LinearRgb) -> Lamps {
-    let mut light = Lamps { lamps, ..Lamps::default() };
+fn lighting(lamps: Vec<Lamp>, paints: &[LinearRgb; N_COLORS], around: f64, window: LinearRgb) -> LampLight {
+    let mut light = LampLight { lamps, ..LampLight::default() };
     let direct = mean_irradiance(&light);
     light.ambient = direct * around + window;
     let floor = paints[0] * 0.7 + LinearRgb::new(0.23, 0.21, 0.19) * 0.3;
@@ -146,7 +146,7 @@ fn lighting(lamps: Vec<Lamp>, paints: &[LinearRgb; N_COLORS], around: f64, windo
 fn camera<R: Rng + ?Sized>(
     kelvin: f64,
     paints: &[LinearRgb; N_COLORS],
-    bright: &Lamps,
+    bright: &LampLight,
     rng: &mut R,
 ) -> Result<CameraParams, SimulationError> {
     let off = |preset: f64| (1.0 / preset - 1.0 / kelvin).abs();

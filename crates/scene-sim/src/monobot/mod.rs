@@ -1,4 +1,4 @@
-//! The one-dimensional robot of [Andrade-Cetto 2005, Sec. 2.2, Figs. 3-6]: a sinusoidal drive on a line, landmarks ahead, noise in
+//! The one-dimensional robot of [Andrade-Cetto 2005, Sec. 2.2, Figs. 3–6]: a sinusoidal drive on a line, landmarks ahead, noise in
 //! proportion to motion and distance.
 
 mod records;

@@ -11,17 +11,17 @@ pub struct MonobotParams {
     /// Number of landmarks, all at one place, at most 10 000. Default 1.
     pub n_landmarks: usize,
     /// Start and end position of the robot, m. Default −1 (the paper's).
-    pub start_m: f64,
+    pub start_and_end_m: f64,
     /// Position of the landmarks, m. Default 1 (the paper's).
-    pub landmark_m: f64,
+    pub landmark_position_m: f64,
     /// Amplitude of the robot's motion, m. Default 1 (the paper states none).
-    pub amplitude_m: f64,
+    pub motion_amplitude_m: f64,
     /// σ of a motion as a share of the commanded motion. Default 0.1 (the paper states none).
-    pub motion_noise: f64,
+    pub motion_sigma_share: f64,
     /// σ of a range as a share of the distance. Default 0.05 (the paper states none).
-    pub range_noise: f64,
+    pub range_sigma_share: f64,
     /// σ of the external position sensor, m. Default 0.05 (the paper states none).
-    pub external_sigma_m: f64,
+    pub external_position_sigma_m: f64,
 }
 
 impl Default for MonobotParams {
@@ -29,12 +29,12 @@ impl Default for MonobotParams {
         Self {
             n_steps: 100,
             n_landmarks: 1,
-            start_m: -1.0,
-            landmark_m: 1.0,
-            amplitude_m: 1.0,
-            motion_noise: 0.1,
-            range_noise: 0.05,
-            external_sigma_m: 0.05,
+            start_and_end_m: -1.0,
+            landmark_position_m: 1.0,
+            motion_amplitude_m: 1.0,
+            motion_sigma_share: 0.1,
+            range_sigma_share: 0.05,
+            external_position_sigma_m: 0.05,
         }
     }
 }
@@ -50,14 +50,14 @@ pub struct MonobotRun {
     pub landmarks: Vec<f64>,
     /// Signed distances $`z_k^{(i)} = x_f^{(i)} - x_k + w`$ to every landmark, metres: one row a position.
     pub ranges: Vec<Vec<f64>>,
-    /// Signed distances $`-x_k + w`$ to a known reference at the origin, metres. [Eq. 20]
+    /// Signed distances $`-x_k + w`$ to a known reference at the origin, metres. [Andrade-Cetto 2005, Eq. 20]
     pub anchor_ranges: Vec<f64>,
     /// Positions $`x_k + w`$ by an external sensor, metres. [Sec. 2.2, "An external sensor"]
     pub external_positions: Vec<f64>,
 }
 
 impl MonobotParams {
-    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
+    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Andrade-Cetto 2005, Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};
@@ -73,10 +73,10 @@ impl MonobotParams {
         self.validate()?;
         let controls: Vec<f64> = (0..self.n_steps).map(|k| self.planned(k + 1) - self.planned(k)).collect();
         let positions = self.positions(&controls, streams);
-        let landmarks = vec![self.landmark_m; self.n_landmarks];
+        let landmarks = vec![self.landmark_position_m; self.n_landmarks];
         let mut noise = |source, sigma: f64| sigma * deviate::normal(streams.of(source));
         let mut measured =
-            |source, distance: f64| distance + noise(source, self.range_noise * distance.abs());
+            |source, distance: f64| distance + noise(source, self.range_sigma_share * distance.abs());
         let ranges = positions
             .iter()
             .map(|x| {
@@ -89,7 +89,7 @@ impl MonobotParams {
         let anchor_ranges = positions.iter().map(|x| measured(RandomStreamPurpose::Anchor, -x)).collect();
         let external_positions = positions
             .iter()
-            .map(|x| x + noise(RandomStreamPurpose::ExternalPosition, self.external_sigma_m))
+            .map(|x| x + noise(RandomStreamPurpose::ExternalPosition, self.external_position_sigma_m))
             .collect();
         Ok(MonobotRun { controls, positions, landmarks, ranges, anchor_ranges, external_positions })
     }
@@ -98,27 +98,27 @@ impl MonobotParams {
         check::count("steps", self.n_steps, 1_000_000)?;
         check::count("landmarks", self.n_landmarks, 10_000)?;
         check::count("ranges", self.n_steps.saturating_mul(self.n_landmarks), 100_000_000)?;
-        check::finite("start (m)", self.start_m)?;
-        check::finite("place of the landmarks (m)", self.landmark_m)?;
-        check::finite("amplitude (m)", self.amplitude_m)?;
-        check::not_negative("σ of a motion", self.motion_noise)?;
-        check::not_negative("σ of a range", self.range_noise)?;
-        check::not_negative("σ of the external sensor (m)", self.external_sigma_m)
+        check::finite("start (m)", self.start_and_end_m)?;
+        check::finite("place of the landmarks (m)", self.landmark_position_m)?;
+        check::finite("amplitude (m)", self.motion_amplitude_m)?;
+        check::not_negative("σ of a motion", self.motion_sigma_share)?;
+        check::not_negative("σ of a range", self.range_sigma_share)?;
+        check::not_negative("σ of the external sensor (m)", self.external_position_sigma_m)
     }
 
     /// The noise-free position after `k` steps.
     fn planned(&self, k: usize) -> f64 {
-        self.start_m + self.amplitude_m * libm::sin(TAU * k as f64 / self.n_steps as f64)
+        self.start_and_end_m + self.motion_amplitude_m * libm::sin(TAU * k as f64 / self.n_steps as f64)
     }
 
     fn positions(&self, controls: &[f64], streams: &mut RandomStreams) -> Vec<f64> {
-        let mut x = self.start_m;
+        let mut x = self.start_and_end_m;
         let moved = controls.iter().map(|u| {
-            x += u + self.motion_noise
+            x += u + self.motion_sigma_share
                 * u.abs()
                 * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
             x
         });
-        std::iter::once(self.start_m).chain(moved).collect()
+        std::iter::once(self.start_and_end_m).chain(moved).collect()
     }
 }

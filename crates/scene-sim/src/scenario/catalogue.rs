@@ -1,12 +1,12 @@
 use std::f64::consts::FRAC_PI_3;
 
 use super::laser::office_laser;
-use super::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
-use crate::drive::{SlipParams, WheeledRobotParams};
+use super::{OdometryParams, OtherRobotParams, PlanarDriveParams, Scenario, ScenarioParams};
+use crate::drive::{WheelSlipParams, WheeledRobotParams};
 use crate::monobot::MonobotParams;
 use crate::random::NoiseShape;
 use crate::route::{CircleRoute, RandomWaypointRoute, RoundedRectangleRoute, RouteParams};
-use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeDependentSigma};
+use crate::sensor::range_bearing::{Clutter, ClutterIdentity, CorrelatedErrorParams, RangeDependentSigma};
 use crate::sensor::{GaussianOdometryParams, OdometryEncoding, RangeBearingParams, WheelOdometryParams};
 use crate::world::{CorridorLoop, RoadsideLandmarks, UniformLandmarkField, WorldLayout};
 
@@ -25,8 +25,8 @@ pub(super) fn all() -> Vec<Scenario> {
 }
 
 /// Two laps of a circle with exactly the noise that filters assume, about 500 steps of 0.25 m as in the shared range-bearing logs.
-fn loop_known() -> PlanarParams {
-    PlanarParams {
+fn loop_known() -> PlanarDriveParams {
+    PlanarDriveParams {
         layout: WorldLayout::UniformField(UniformLandmarkField {
             n_landmarks: 60,
             half_width_m: 16.0,
@@ -35,7 +35,7 @@ fn loop_known() -> PlanarParams {
         n_unknown_codes: 0,
         other_robots: Vec::new(),
         route: RouteParams::Circle(CircleRoute { radius_m: 10.0 }),
-        drive: WheeledRobotParams::default(),
+        robot: WheeledRobotParams::default(),
         odometry: OdometryParams::Gaussian(GaussianOdometryParams::default()),
         sensor: RangeBearingParams { max_range_m: 7.0, ..RangeBearingParams::default() },
         duration_ms: 250_000,
@@ -44,18 +44,18 @@ fn loop_known() -> PlanarParams {
 }
 
 /// The same kind of world, with a sensor that reads no identities.
-fn loop_unlabelled() -> PlanarParams {
+fn loop_unlabelled() -> PlanarDriveParams {
     let known = loop_known();
-    PlanarParams { sensor: RangeBearingParams { labelled: false, ..known.sensor }, ..known }
+    PlanarDriveParams { sensor: RangeBearingParams { labelled: false, ..known.sensor }, ..known }
 }
 
 /// Five minutes in a hall of 6 × 6 m in the manner of the UTIAS logs: velocity odometry, a camera that reads codes, range errors
 /// that grow with range and hang together in time, two other robots, codes that no table lists.
-fn office_velocity() -> PlanarParams {
+fn office_velocity() -> PlanarDriveParams {
     let wander = |half_width_m| {
         RouteParams::Waypoints(RandomWaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
     };
-    PlanarParams {
+    PlanarDriveParams {
         layout: WorldLayout::UniformField(UniformLandmarkField {
             n_landmarks: 15,
             half_width_m: 3.0,
@@ -64,17 +64,17 @@ fn office_velocity() -> PlanarParams {
         n_unknown_codes: 2,
         other_robots: [2, 3].map(|id| OtherRobotParams { id, route: wander(2.0), speed_mps: 0.12 }).to_vec(),
         route: wander(2.2),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.16,
             lookahead_m: 0.2,
             left_radius_error: 0.008,
             right_radius_error: -0.004,
             wheel_separation_error: 0.03,
-            slip: SlipParams { slip_sigma: 0.06, correlation_time_s: 2.0, wheel_correlation: 0.5 },
+            slip: WheelSlipParams { slip_sigma: 0.06, correlation_time_s: 2.0, wheel_correlation: 0.5 },
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
-            kind: OdometryEncoding::Velocity,
+            encoding: OdometryEncoding::Velocity,
             ..WheelOdometryParams::default()
         }),
         sensor: RangeBearingParams {
@@ -91,7 +91,7 @@ fn office_velocity() -> PlanarParams {
                 correlation_time_s: 8.0,
             },
             outlier_share: 0.01,
-            missed_share: 0.1,
+            missed_target_share: 0.1,
             ..RangeBearingParams::default()
         },
         duration_ms: 300_000,
@@ -100,8 +100,8 @@ fn office_velocity() -> PlanarParams {
 }
 
 /// Rocks along a road, every sin at once.
-fn rough_known() -> PlanarParams {
-    PlanarParams {
+fn rough_known() -> PlanarDriveParams {
+    PlanarDriveParams {
         layout: WorldLayout::Roadside(RoadsideLandmarks { n_landmarks: 50, clear_m: 1.0, verge_m: 4.0 }),
         n_unknown_codes: 3,
         other_robots: vec![OtherRobotParams {
@@ -114,18 +114,18 @@ fn rough_known() -> PlanarParams {
             width_m: 14.0,
             corner_radius_m: 2.0,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.003,
             right_radius_error: -0.001,
             wheel_separation_error: 0.02,
-            slip: SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.6 },
+            slip: WheelSlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.6 },
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
             period_ms: 250,
             ticks_per_turn: Some(500),
-            travel_noise: 0.01,
+            travel_sigma_share: 0.01,
             ..WheelOdometryParams::default()
         }),
         sensor: RangeBearingParams {
@@ -142,11 +142,11 @@ fn rough_known() -> PlanarParams {
                 bearing_sigma_rad: 0.005,
                 correlation_time_s: 3.0,
             },
-            latency_ms: 40,
+            stamp_delay_ms: 40,
             outlier_share: 0.03,
             scan_dropout_share: 0.1,
-            missed_share: 0.15,
-            clutter: Clutter { mean: 0.3, label: ClutterLabel::AnyLandmark },
+            missed_target_share: 0.15,
+            clutter: Clutter { mean: 0.3, label: ClutterIdentity::AnyLandmark },
             mislabelled_share: 0.01,
             ..RangeBearingParams::default()
         },
@@ -156,8 +156,8 @@ fn rough_known() -> PlanarParams {
 }
 
 /// Five laps of a corridor about 64 m long, landmarks on its walls and hidden behind its corners.
-fn long_loop() -> PlanarParams {
-    PlanarParams {
+fn long_loop() -> PlanarDriveParams {
+    PlanarDriveParams {
         layout: WorldLayout::CorridorLoop(CorridorLoop {
             length_m: 22.0,
             width_m: 12.0,
@@ -171,12 +171,12 @@ fn long_loop() -> PlanarParams {
             width_m: 12.0,
             corner_radius_m: 1.5,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0005,
             right_radius_error: -0.0003,
             wheel_separation_error: 0.005,
-            slip: SlipParams { slip_sigma: 0.02, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+            slip: WheelSlipParams { slip_sigma: 0.02, correlation_time_s: 1.0, wheel_correlation: 0.5 },
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {

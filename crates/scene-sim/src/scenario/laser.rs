@@ -1,7 +1,7 @@
 use wayfix_sensor_log::Record;
 
 use super::{OdometryParams, Scenario, ScenarioParams};
-use crate::drive::{SlipParams, WheeledRobotParams};
+use crate::drive::{WheelSlipParams, WheeledRobotParams};
 use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::route::{RoundedRectangleRoute, RouteParams};
 use crate::sensor::laser::People;
@@ -17,7 +17,7 @@ pub struct LaserDriveParams {
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Laser.
@@ -37,7 +37,7 @@ impl LaserDriveParams {
         let route = self.route.build(streams.of(RandomStreamPurpose::Route))?;
         let world = PlanarWorld::new(self.layout.build(&route, streams.of(RandomStreamPurpose::Landmarks))?);
         let simulation = Simulation {
-            drive: self.drive,
+            robot: self.robot,
             duration_ms: self.duration_ms,
             truth_period_ms: self.truth_period_ms,
             true_walls: true,
@@ -48,8 +48,8 @@ impl LaserDriveParams {
     }
 }
 
-/// One lap of a loop of 90 m on an office floor of 303 m², as in Fig. 7 of Andrade-Cetto, and nearly 4 m beyond its start. The wheels differ by 0.13
-/// %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
+/// One lap of a loop of 90 m on an office floor of 303 m², as in [Andrade-Cetto 2005, Fig. 7], and nearly 4 m beyond its start. The wheels
+/// differ by 0.13 %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
 pub(super) fn office_laser() -> Scenario {
     let params = LaserDriveParams {
         layout: WorldLayout::OfficeFloor(OfficeFloor {
@@ -67,12 +67,12 @@ pub(super) fn office_laser() -> Scenario {
             width_m: 17.4,
             corner_radius_m: 1.0,
         }),
-        drive: WheeledRobotParams {
+        robot: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0008,
             right_radius_error: -0.0005,
             wheel_separation_error: 0.01,
-            slip: SlipParams { slip_sigma: 0.03, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+            slip: WheelSlipParams { slip_sigma: 0.03, correlation_time_s: 1.0, wheel_correlation: 0.5 },
             ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {

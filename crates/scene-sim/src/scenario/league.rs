@@ -26,5 +26,5 @@ fn switching() -> LeagueParams {
     use LampSetting::{Bright, Dark};
     let lights = vec![(0, Bright), (50, Dark), (95, Bright), (140, Dark), (170, Bright), (230, Dark)];
     let params = LeagueParams { lamp_settings: lights, ..under(Bright) };
-    LeagueParams { n_labelled: params.n_frames, ..params }
+    LeagueParams { n_labelled_frames: params.n_frames, ..params }
 }

@@ -11,6 +11,6 @@ mod store;
 
 pub use laser::LaserDriveParams;
 pub use named::{Scenario, ScenarioParams};
-pub use planar::{OdometryParams, OtherRobotParams, PlanarParams};
+pub use planar::{OdometryParams, OtherRobotParams, PlanarDriveParams};
 #[cfg(feature = "indoors")]
 pub use store::RetailStoreLapsParams;

@@ -5,7 +5,7 @@ use wayfix_sensor_log::{Record, Stamp};
 use super::league;
 #[cfg(feature = "indoors")]
 use super::store::{self, RetailStoreLapsParams};
-use super::{LaserDriveParams, PlanarParams, catalogue};
+use super::{LaserDriveParams, PlanarDriveParams, catalogue};
 use crate::SimulationError;
 #[cfg(feature = "league")]
 use crate::league::LeagueParams;
@@ -36,7 +36,7 @@ pub struct Scenario {
 #[non_exhaustive]
 pub enum ScenarioParams {
     /// A robot in the plane.
-    Planar(Box<PlanarParams>),
+    Planar(Box<PlanarDriveParams>),
     /// A robot in the plane with a laser.
     Laser(Box<LaserDriveParams>),
     /// A robot on a line, one step every 100 ms.

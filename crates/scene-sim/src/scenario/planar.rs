@@ -13,7 +13,7 @@ use crate::{Simulation, SimulationError, check};
 
 /// Everything about one drive in the plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlanarParams {
+pub struct PlanarDriveParams {
     /// Landmarks and walls.
     pub layout: WorldLayout,
     /// Number of objects with unlisted codes 1000, 1001, …, placed randomly among the landmarks; at most 1000.
@@ -23,7 +23,7 @@ pub struct PlanarParams {
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: WheeledRobotParams,
+    pub robot: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Sensor.
@@ -54,7 +54,7 @@ pub enum OdometryParams {
     Wheels(WheelOdometryParams),
 }
 
-impl PlanarParams {
+impl PlanarDriveParams {
     /// The log, in time order.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl PlanarParams {
             plan,
         };
         let simulation = Simulation {
-            drive: self.drive,
+            robot: self.robot,
             duration_ms: self.duration_ms,
             truth_period_ms: self.truth_period_ms,
             ..Simulation::new(&world, route)

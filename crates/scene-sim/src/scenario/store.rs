@@ -5,7 +5,7 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use super::{Scenario, ScenarioParams};
 use crate::SimulationError;
 use crate::indoors::{
-    IndoorDrive, IndoorDriveStep, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot,
+    IndoorDrive, IndoorDriveParams, IndoorDriveStep, RetailStore, RetailStoreParams, calibrated_robot,
 };
 use crate::random::RandomStreams;
 
@@ -22,7 +22,7 @@ pub struct RetailStoreLapsParams {
     /// Laps around everything.
     pub n_laps: usize,
     /// The drive; its robot is drawn from the seed.
-    pub drive: IndoorParams,
+    pub drive: IndoorDriveParams,
     /// Quality of the pictures in the log, 1 to 100.
     pub jpeg_quality: u8,
 }
@@ -33,7 +33,7 @@ pub(super) fn all() -> Vec<Scenario> {
         store: RetailStoreParams::area(),
         store_seed: 31,
         n_laps: 2,
-        drive: IndoorParams { n_people: 1, ..IndoorParams::default() },
+        drive: IndoorDriveParams { n_people: 1, ..IndoorDriveParams::default() },
         jpeg_quality: 92,
     };
     vec![Scenario { name: "store_area", seed: 31, params: ScenarioParams::StoreLaps(Box::new(params)) }]
@@ -47,7 +47,7 @@ impl RetailStoreLapsParams {
     pub fn simulate(&self, streams: RandomStreams) -> Result<Vec<Record>, SimulationError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.store_seed);
         let building = RetailStore::draw(self.store, &mut rng)?.building();
-        let params = IndoorParams { drive: calibrated_robot(&mut rng), ..self.drive };
+        let params = IndoorDriveParams { robot: calibrated_robot(&mut rng), ..self.drive };
         let route = building.aisles().laps(self.n_laps, &mut rng)?;
         let mut records = Vec::new();
         for step in IndoorDrive::new(&building, route, params, streams)? {

@@ -13,14 +13,14 @@ pub struct GaussianOdometryParams {
     /// Time from one increment to the next, milliseconds. Default 500.
     pub period_ms: u32,
     /// σ of x and y of each increment, metres. Default 0.02.
-    pub sigma_m: f64,
+    pub increment_position_sigma_m: f64,
     /// σ of the turn of each increment, radians. Default 0.005.
-    pub sigma_rad: f64,
+    pub increment_heading_sigma_rad: f64,
 }
 
 impl Default for GaussianOdometryParams {
     fn default() -> Self {
-        Self { period_ms: 500, sigma_m: 0.02, sigma_rad: 0.005 }
+        Self { period_ms: 500, increment_position_sigma_m: 0.02, increment_heading_sigma_rad: 0.005 }
     }
 }
 
@@ -31,8 +31,8 @@ impl GaussianOdometryParams {
     /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimulationError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
-        check::not_negative("σ of odometry increments (m)", self.sigma_m)?;
-        check::not_negative("σ of odometry turns (rad)", self.sigma_rad)
+        check::not_negative("σ of odometry increments (m)", self.increment_position_sigma_m)?;
+        check::not_negative("σ of odometry turns (rad)", self.increment_heading_sigma_rad)
     }
 }
 
@@ -64,9 +64,9 @@ impl SimulatedSensor for GaussianOdometry {
         let step = plane::relative(&last, &moment.pose);
         let mut noise = |sigma: f64| sigma * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
         let noisy = Pose2::new(
-            step.x() + noise(self.params.sigma_m),
-            step.y() + noise(self.params.sigma_m),
-            step.heading() + noise(self.params.sigma_rad),
+            step.x() + noise(self.params.increment_position_sigma_m),
+            step.y() + noise(self.params.increment_position_sigma_m),
+            step.heading() + noise(self.params.increment_heading_sigma_rad),
         );
         Some(SensorReading { data: RecordData::OdometryIncrement(noisy), stamp_offset_ms: 0 })
     }

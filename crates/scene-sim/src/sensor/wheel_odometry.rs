@@ -20,7 +20,7 @@ pub enum OdometryEncoding {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelOdometryParams {
     /// Velocities or increments. Default increments.
-    pub kind: OdometryEncoding,
+    pub encoding: OdometryEncoding,
     /// Length of a period, milliseconds. Default 100.
     pub period_ms: u32,
     /// Wheel radius believed, metres. Default 0.05.
@@ -30,18 +30,18 @@ pub struct WheelOdometryParams {
     /// Encoder ticks per turn of a wheel; `None` measures angles exactly. Default 2000.
     pub ticks_per_turn: Option<u32>,
     /// σ of the white error of each wheel's travel, as a share of the travel. Default 0.
-    pub travel_noise: f64,
+    pub travel_sigma_share: f64,
 }
 
 impl Default for WheelOdometryParams {
     fn default() -> Self {
         Self {
-            kind: OdometryEncoding::Increment,
+            encoding: OdometryEncoding::Increment,
             period_ms: 100,
             wheel_radius_m: 0.05,
             wheel_separation_m: 0.30,
             ticks_per_turn: Some(2000),
-            travel_noise: 0.0,
+            travel_sigma_share: 0.0,
         }
     }
 }
@@ -56,7 +56,7 @@ impl WheelOdometryParams {
         check::positive("wheel radius of the odometry (m)", self.wheel_radius_m)?;
         check::positive("track of the odometry (m)", self.wheel_separation_m)?;
         check::positive("encoder ticks per turn", self.ticks_per_turn.map_or(1.0, f64::from))?;
-        check::not_negative("σ of a wheel's travel", self.travel_noise)
+        check::not_negative("σ of a wheel's travel", self.travel_sigma_share)
     }
 }
 
@@ -97,13 +97,13 @@ impl SimulatedSensor for WheelOdometry {
         let now = moment.wheel_angles.map(|angle| self.counted(angle));
         let last = self.last.replace(now)?;
         let [left, right] = [0, 1].map(|k| {
-            let noise =
-                self.params.travel_noise * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
+            let noise = self.params.travel_sigma_share
+                * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
             (now[k] - last[k]) * self.params.wheel_radius_m * (1.0 + noise)
         });
         let (travel, turn) = (0.5 * (left + right), (right - left) / self.params.wheel_separation_m);
         let seconds = f64::from(self.params.period_ms) * 1e-3;
-        Some(match self.params.kind {
+        Some(match self.params.encoding {
             OdometryEncoding::Velocity => SensorReading {
                 data: RecordData::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
                 stamp_offset_ms: -i64::from(self.params.period_ms),

@@ -1,12 +1,11 @@
 //! Parameters without a meaning are refused with their name and value; nothing panics.
 
-use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::league::{
-    BodySwayParams, CameraParams, CameraSimulator, GaitOdometryParams, LeagueDrive, LeagueParams,
-    LegWalkParams, LeggedRobotParams, LinearRgb, RobotHeadParams, TrainingParams,
+    BodySwayParams, CameraParams, CameraSimulator, FieldWalkParams, GaitOdometryParams, LeagueDrive,
+    LeagueParams, LeggedRobotParams, LinearRgb, RobotHeadParams,
 };
 use wayfix_scene_sim::random::NoiseShape;
 
@@ -29,13 +28,13 @@ fn cameras() {
         for params in [
             CameraParams { gain: bad, ..honest() },
             CameraParams { white_balance: LinearRgb::new(1.0, bad, 1.0), ..honest() },
-            CameraParams { white_balance_drift: bad, ..honest() },
+            CameraParams { white_balance_drift_sigma: bad, ..honest() },
             CameraParams { white_balance_correlation_s: bad, ..honest() },
             CameraParams { vignetting: LinearRgb::new(0.0, 0.0, bad), ..honest() },
             CameraParams { crosstalk: bad, ..honest() },
-            CameraParams { flare: bad, ..honest() },
-            CameraParams { full_well: bad, ..honest() },
-            CameraParams { read_noise: bad, ..honest() },
+            CameraParams { stray_light: bad, ..honest() },
+            CameraParams { full_well_electrons: bad, ..honest() },
+            CameraParams { read_noise_sigma: bad, ..honest() },
             CameraParams { gamma: bad, ..honest() },
         ] {
             assert_refused(CameraSimulator::new(params), bad);
@@ -56,15 +55,15 @@ fn robots() {
     let default = LeggedRobotParams::default();
     for bad in BAD {
         let walks = [
-            LegWalkParams { speed_mps: bad, ..default.walk },
-            LegWalkParams { turn_radps: bad, ..default.walk },
-            LegWalkParams { lag_s: bad, ..default.walk },
-            LegWalkParams { mean_rest_s: bad, ..default.walk },
-            LegWalkParams { sideways_share: bad, ..default.walk },
-            LegWalkParams { board_margin_m: bad, ..default.walk },
+            FieldWalkParams { speed_mps: bad, ..default.walk },
+            FieldWalkParams { turn_radps: bad, ..default.walk },
+            FieldWalkParams { speed_time_constant_s: bad, ..default.walk },
+            FieldWalkParams { mean_rest_s: bad, ..default.walk },
+            FieldWalkParams { sideways_share: bad, ..default.walk },
+            FieldWalkParams { min_board_distance_m: bad, ..default.walk },
         ];
         let sways = [
-            BodySwayParams { stride_s: bad, ..default.sway },
+            BodySwayParams { stride_period_s: bad, ..default.sway },
             BodySwayParams { roll_amplitude_rad: bad, ..default.sway },
             BodySwayParams { pitch_amplitude_rad: bad, ..default.sway },
             BodySwayParams { height_amplitude_m: bad, ..default.sway },
@@ -73,21 +72,21 @@ fn robots() {
         let heads = [
             RobotHeadParams { speed_radps: bad, ..default.head },
             RobotHeadParams { pan_limit_rad: bad, ..default.head },
-            RobotHeadParams { mean_gaze_s: bad, ..default.head },
+            RobotHeadParams { mean_gaze_duration_s: bad, ..default.head },
             RobotHeadParams { downward_gaze_share: bad, ..default.head },
             RobotHeadParams { angle_resolution_rad: bad, ..default.head },
             RobotHeadParams { angle_latency_s: bad, ..default.head },
             RobotHeadParams { angle_bias_sigma_rad: bad, ..default.head },
         ];
         let odometries = [
-            GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },
-            GaitOdometryParams { turn_scale: [1.0, bad], ..default.odometry },
+            GaitOdometryParams { step_scale_range: [bad, 1.0], ..default.odometry },
+            GaitOdometryParams { turn_scale_range: [1.0, bad], ..default.odometry },
             GaitOdometryParams { noise: bad, ..default.odometry },
             GaitOdometryParams {
                 noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad },
                 ..default.odometry
             },
-            GaitOdometryParams { drift_rad_per_m: bad, ..default.odometry },
+            GaitOdometryParams { drift_sigma_rad_per_m: bad, ..default.odometry },
             GaitOdometryParams { drift_correlation_s: bad, ..default.odometry },
         ];
         let robots = walks.map(|walk| LeggedRobotParams { walk, ..default }).into_iter();
@@ -117,20 +116,10 @@ fn drives() {
         LeagueDrive::new(&LeagueParams { period_ms: 60_001, ..default.clone() }, streams(1)),
         60_001.0,
     );
-    let labels = LeagueParams { n_frames: 3, n_labelled: 4, ..default.clone() }.simulate(streams(1));
+    let labels = LeagueParams { n_frames: 3, n_labelled_frames: 4, ..default.clone() }.simulate(streams(1));
     assert!(matches!(labels, Err(SimulationError::TooMany { limit: 3, got: 4, .. })));
     let many = LeagueDrive::new(&LeagueParams { n_frames: 100_001, ..default.clone() }, streams(1));
     assert!(matches!(many, Err(SimulationError::TooMany { got: 100_001, .. })));
     let none = LeagueParams { n_frames: 0, ..default };
     assert_eq!(LeagueDrive::new(&none, streams(1)).expect("no frames are no fault").count(), 0);
-}
-
-#[test]
-fn training() {
-    let rng = ChaCha8Rng::seed_from_u64(1);
-    let many = TrainingParams { n_halls: 10_001, ..TrainingParams::default() };
-    assert!(matches!(many.gather(rng.clone()), Err(SimulationError::TooMany { got: 10_001, .. })));
-    let none = TrainingParams { n_images: 0, n_halls: 1, ..TrainingParams::default() };
-    let sets = none.gather(rng).expect("no pictures are no fault");
-    assert!(sets.iter().all(|set| set.images.is_empty() && set.pixel_variance == [0.0; 3]));
 }

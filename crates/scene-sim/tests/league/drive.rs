@@ -61,7 +61,7 @@ fn the_white_balance_drifts_as_asked_for() {
         move |own: CameraParams| CameraParams {
             white_balance: own.white_balance,
             gain: 0.3 * own.gain, // far from saturation
-            white_balance_drift: drift,
+            white_balance_drift_sigma: drift,
             white_balance_correlation_s: 0.1,
             ..honest()
         }
@@ -127,7 +127,7 @@ fn odometry_comes_between_the_frames() {
 
 #[test]
 fn the_log_has_its_records_in_order_and_labels_where_asked_for() {
-    let params = LeagueParams { n_frames: 9, n_labelled: 3, ..LeagueParams::default() };
+    let params = LeagueParams { n_frames: 9, n_labelled_frames: 3, ..LeagueParams::default() };
     let records = params.simulate(streams(1)).expect("sound parameters");
     assert!(records.is_sorted_by_key(|record| record.stamp));
     let kinds: Vec<&str> = records.iter().map(|record| record.data.kind()).collect();

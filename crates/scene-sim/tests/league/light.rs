@@ -2,7 +2,7 @@
 
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_scene_sim::league::{
-    Lamp, LampSetting, Lamps, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body,
+    Lamp, LampLight, LampSetting, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body,
 };
 
 use crate::support::{Blank, channel, field_in, honest, looking, streams, take};
@@ -24,7 +24,7 @@ fn a_black_body_has_the_tabulated_color() {
 #[test]
 fn light_falls_off_over_the_carpet_as_in_the_picture() {
     let lamp = Lamp { position: Vector3::new(-1.0, 0.0, 2.5), strength: LinearRgb::repeat(5.0) };
-    let light = Lamps { lamps: vec![lamp], ..Lamps::default() };
+    let light = LampLight { lamps: vec![lamp], ..LampLight::default() };
     let (backdrop, paints) = (Blank(LinearRgb::zeros()), [LinearRgb::repeat(0.5); N_COLORS]);
     let scene = field_in(&light, &backdrop, &paints);
     let below = |x: f64| {
@@ -42,7 +42,7 @@ fn light_falls_off_over_the_carpet_as_in_the_picture() {
 #[test]
 fn surfaces_are_shaded_by_the_angle_to_the_lamp() {
     let lamp = Lamp { position: Vector3::new(0.0, 0.0, 2.0), strength: LinearRgb::repeat(1.0) };
-    let light = Lamps { lamps: vec![lamp], ..Lamps::default() };
+    let light = LampLight { lamps: vec![lamp], ..LampLight::default() };
     let at = Vector3::new(1.0, 0.0, 0.0);
     let towards = light.irradiance(&at, &-Vector3::x());
     assert!(towards.x > 0.0 && light.irradiance(&at, &Vector3::x()) == LinearRgb::zeros());
@@ -57,7 +57,7 @@ fn in_the_dark_one_lamp_of_the_same_hall_is_left() {
             .expect("a venue");
         let left_on = venue.light(LampSetting::Dark).lamps[0];
         assert!(venue.light(LampSetting::Bright).lamps.contains(&left_on));
-        let middle = |light: &Lamps| light.irradiance(&Vector3::zeros(), &Vector3::z()).y;
+        let middle = |light: &LampLight| light.irradiance(&Vector3::zeros(), &Vector3::z()).y;
         let share = middle(&venue.dark) / middle(&venue.bright);
         assert!((0.05..0.5).contains(&share), "one of four or six, nearer or further: {share}");
     }

@@ -7,5 +7,4 @@ mod light;
 mod noise;
 mod robot;
 mod support;
-mod training;
 mod truth;

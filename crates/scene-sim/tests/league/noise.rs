@@ -6,15 +6,17 @@ use crate::support::{deviation, honest, mean, of_blank};
 
 #[test]
 fn shot_and_read_noise_add_up() {
-    for (signal, full_well, read_noise) in
+    for (signal, full_well_electrons, read_noise_sigma) in
         [(0.5, 500.0, 0.0), (0.1, 500.0, 0.0), (0.5, 1e15, 0.03), (0.2, 500.0, 0.02)]
     {
-        let camera = CameraParams { full_well, read_noise, ..honest() };
+        let camera = CameraParams { full_well_electrons, read_noise_sigma, ..honest() };
         let picture = of_blank(camera, LinearRgb::repeat(signal));
         let green: Vec<f64> = picture.rgb.chunks_exact(3).map(|rgb| f64::from(rgb[1])).collect();
         let n = green.len() as f64;
         // Rounding to whole levels adds 1/12.
-        let sigma = (255.0 * 255.0 * (signal / full_well + read_noise * read_noise) + 1.0 / 12.0_f64).sqrt();
+        let sigma = (255.0 * 255.0 * (signal / full_well_electrons + read_noise_sigma * read_noise_sigma)
+            + 1.0 / 12.0_f64)
+            .sqrt();
         let off = (deviation(&green) - sigma).abs();
         assert!(off < 4.0 * sigma / (2.0 * n).sqrt() + 0.02, "σ {} wanted {sigma}", deviation(&green));
         // Half a step of the response is lost.

@@ -3,7 +3,7 @@
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_scene_sim::league::{
-    BodySwayParams, GaitOdometryParams, LegWalkParams, LeggedRobot, LeggedRobotParams, RobotHeadParams,
+    BodySwayParams, FieldWalkParams, GaitOdometryParams, LeggedRobot, LeggedRobotParams, RobotHeadParams,
     landmarks,
 };
 use wayfix_scene_sim::{plane, space};
@@ -64,7 +64,7 @@ fn without_sway_and_errors_of_the_joints_the_mount_is_true() {
 /// Sums of the true and the reported motion, forwards, sideways and turning, over 100 s.
 fn odometry(odometry: GaitOdometryParams, sideways_share: f64) -> [(f64, f64); 3] {
     let default = LeggedRobotParams::default();
-    let walk = LegWalkParams { sideways_share, ..default.walk };
+    let walk = FieldWalkParams { sideways_share, ..default.walk };
     let params = LeggedRobotParams { odometry, walk, ..default };
     let mut streams = streams(3);
     let mut robot = LeggedRobot::new(params, None, landmarks(), &mut streams).expect("a sound robot");
@@ -86,10 +86,10 @@ fn odometry(odometry: GaitOdometryParams, sideways_share: f64) -> [(f64, f64); 3
 #[test]
 fn odometry_is_off_by_a_scale_per_axis() {
     let silent = GaitOdometryParams {
-        step_scale: [0.8, 0.8],
-        turn_scale: [1.1, 1.1],
+        step_scale_range: [0.8, 0.8],
+        turn_scale_range: [1.1, 1.1],
         noise: 0.0,
-        drift_rad_per_m: 0.0,
+        drift_sigma_rad_per_m: 0.0,
         ..LeggedRobotParams::default().odometry
     };
     // Without turning, the parts of a way add up exactly; and turns always do.
@@ -102,7 +102,7 @@ fn odometry_is_off_by_a_scale_per_axis() {
 
 #[test]
 fn odometry_of_a_robot_at_rest_is_nothing() {
-    let walk = LegWalkParams { speed_mps: 0.0, mean_rest_s: 1e9, ..LeggedRobotParams::default().walk };
+    let walk = FieldWalkParams { speed_mps: 0.0, mean_rest_s: 1e9, ..LeggedRobotParams::default().walk };
     let mut streams = streams(1);
     let params = LeggedRobotParams { walk, ..LeggedRobotParams::default() };
     let start = Pose2::new(0.5, 0.0, 0.0);

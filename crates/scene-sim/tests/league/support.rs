@@ -3,7 +3,7 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
 use wayfix_scene_sim::league::{
-    Backdrop, CameraParams, CameraSimulator, ChromaSubsampling, Lamps, LeaguePicture, LeagueScene,
+    Backdrop, CameraParams, CameraSimulator, ChromaSubsampling, LampLight, LeaguePicture, LeagueScene,
     LightField, LinearRgb, N_COLORS, SceneSurface, SurfaceHit,
 };
 use wayfix_scene_sim::random::RandomStreams;
@@ -18,12 +18,12 @@ pub(crate) fn honest() -> CameraParams {
     CameraParams {
         vignetting: LinearRgb::zeros(),
         crosstalk: 0.0,
-        flare: 0.0,
-        full_well: 1e15,
-        read_noise: 0.0,
+        stray_light: 0.0,
+        full_well_electrons: 1e15,
+        read_noise_sigma: 0.0,
         gamma: 1.0,
         chroma_subsampling: ChromaSubsampling::Each,
-        white_balance_drift: 0.0,
+        white_balance_drift_sigma: 0.0,
         ..CameraParams::ers7().expect("a sound camera")
     }
 }
@@ -37,8 +37,8 @@ impl Backdrop for Blank {
     }
 }
 
-pub(crate) fn even_light() -> Lamps {
-    Lamps { lamps: vec![], ambient: LinearRgb::repeat(1.0), bounce: LinearRgb::repeat(1.0) }
+pub(crate) fn even_light() -> LampLight {
+    LampLight { lamps: vec![], ambient: LinearRgb::repeat(1.0), bounce: LinearRgb::repeat(1.0) }
 }
 
 /// A picture of a blank wall of this reflectance.

@@ -66,6 +66,9 @@ impl Choice {
             camera_info(image, of(Kind::CameraInfo), any_camera),
             best(of(Kind::TruePose)),
             estimate,
+            best(of(Kind::MeasuredPosition)),
+            best(of(Kind::MeasuredHeading)),
+            best(of(Kind::MeasuredPose)),
         ];
         let chosen = chosen.into_iter().flatten().chain(transforms);
         Ok(Self {

@@ -9,6 +9,9 @@ pub(crate) enum Kind {
     CameraInfo,
     TruePose,
     EstimatedPose,
+    MeasuredPosition,
+    MeasuredHeading,
+    MeasuredPose,
     Transforms,
 }
 
@@ -17,6 +20,8 @@ pub(crate) type BagRoute = (RosSchema, Kind);
 
 /// Parts of a topic's name that indicate motion capture or a simulator.
 const TRUTH: [&str; 6] = ["truth", "mocap", "motion_capture", "vicon", "optitrack", "qualisys"];
+/// Parts of the name of a topic of poses that a sensor measures without a map of its own.
+const MEASURED: [&str; 6] = ["camera", "marker", "apriltag", "aruco", "beacon", "uwb"];
 /// Names of poses that are goals or manual inputs and not estimates.
 const NO_ESTIMATE: [&str; 5] = ["goal", "target", "setpoint", "waypoint", "initialpose"];
 
@@ -34,8 +39,14 @@ impl Kind {
             }
             RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped => {
                 let topic = topic.to_ascii_lowercase();
+                let is_measured = MEASURED.iter().any(|word| topic.contains(word));
+                if is_measured && schema == RosSchema::PoseWithCovarianceStamped {
+                    return Some(Self::MeasuredPose);
+                }
                 (!NO_ESTIMATE.iter().any(|word| topic.contains(word))).then_some(Self::EstimatedPose)
             }
+            RosSchema::NavSatFix => Some(Self::MeasuredPosition),
+            RosSchema::Imu => Some(Self::MeasuredHeading),
             RosSchema::Transforms => Some(Self::Transforms),
         }
     }
@@ -49,6 +60,9 @@ impl Kind {
             Self::CameraInfo => "camera info",
             Self::TruePose => "true pose",
             Self::EstimatedPose => "estimated pose",
+            Self::MeasuredPosition => "measured position",
+            Self::MeasuredHeading => "measured heading",
+            Self::MeasuredPose => "measured pose",
             Self::Transforms => "transforms",
         }
     }

@@ -4,6 +4,7 @@ mod camera;
 mod candidate;
 mod choice;
 mod kind;
+mod measurement;
 mod motion;
 mod probe;
 mod records;

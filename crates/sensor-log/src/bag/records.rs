@@ -7,7 +7,7 @@ use super::motion::{Odometer, planar};
 use super::probe::ODOMETRY_FRAME;
 use super::scan::Mount;
 use super::transforms::{Transforms, is_body, last_part};
-use super::{Choice, camera, scan};
+use super::{Choice, camera, measurement, scan};
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::formats::format::shortened;
 use crate::image::picture;
@@ -19,6 +19,7 @@ use crate::{EncodedImage, LaserScan, Record, RecordData, RowProblemKind, Stamp, 
 const MAP_FRAME: &str = "map";
 const LASER: &str = "laser";
 const CAMERA: &str = "camera";
+const IMU: &str = "IMU";
 
 /// Makes records of the messages of a bag, one after the other: some only mean something together.
 #[derive(Debug, Default)]
@@ -77,6 +78,9 @@ impl BagRecords {
             RosMessage::Odometry(message) => self.odometry(at(&message.header)?, kind, &message),
             RosMessage::Pose(message) => {
                 let (stamp, pose) = (at(&message.header)?, planar(&message.pose)?);
+                if let (Kind::MeasuredPose, Some(covariance)) = (kind, &message.covariance) {
+                    return Ok(one(stamp, measurement::pose(message.header.frame_id, pose, covariance)?));
+                }
                 Ok(one(
                     stamp,
                     if kind == Kind::TruePose { RecordData::TruePose } else { RecordData::EstimatedPose }(
@@ -87,6 +91,12 @@ impl BagRecords {
             RosMessage::Twist(message) => {
                 let stamp = message.header.as_ref().map_or(Ok(log_time), at)?;
                 Ok(one(stamp, velocity(&message.twist)?))
+            }
+            RosMessage::NavSatFix(fix) => Ok(one(at(&fix.header)?, measurement::position(&fix)?)),
+            RosMessage::Imu(imu) => {
+                let mount = self.transforms.in_body(imu.header.frame_id, self.body.as_deref());
+                self.note_place(IMU, imu.header.frame_id, mount.is_some());
+                Ok(one(at(&imu.header)?, measurement::heading(&imu, mount.as_ref())?))
             }
             RosMessage::Transforms(transforms) => {
                 let mut records = Vec::new();
@@ -110,19 +120,23 @@ impl BagRecords {
     /// Assumptions made, available after the last message.
     pub(crate) fn warnings(&self) -> Vec<(&'static str, String)> {
         let mut warnings = Vec::new();
-        if let Some(frame) = self.unplaced.get(LASER) {
-            let text = format!(
-                "no transform leads from the robot to the laser's frame {:?}: the laser is taken to be at the robot's centre (the parameter `laser = [x, y, heading]` places it)",
-                shortened(frame)
-            );
-            warnings.push(("laser_mount_unknown", text));
-        }
-        if let Some(frame) = self.unplaced.get(CAMERA) {
-            let text = format!(
-                "no transform leads from the robot to the camera's frame {:?}: images have no camera mount",
-                shortened(frame)
-            );
-            warnings.push(("camera_mount_unknown", text));
+        let assumed = [
+            (
+                LASER,
+                "laser_mount_unknown",
+                "the laser is taken to be at the robot's centre (the parameter `laser = [x, y, heading]` places it)",
+            ),
+            (CAMERA, "camera_mount_unknown", "images have no camera mount"),
+            (IMU, "imu_mount_unknown", "its axes are taken to be those of the robot"),
+        ];
+        for (sensor, name, assumption) in assumed {
+            if let Some(frame) = self.unplaced.get(sensor) {
+                let frame = shortened(frame);
+                let text = format!(
+                    "no transform leads from the robot to the {sensor}'s frame {frame:?}: {assumption}"
+                );
+                warnings.push((name, text));
+            }
         }
         if self.lacks_range_limit {
             let text = "scans state no largest range (range_max): every finite range counts as an echo";

@@ -34,6 +34,10 @@ impl<'a> CdrReader<'a> {
         self.number(u8::from_le_bytes, u8::from_be_bytes)
     }
 
+    pub(crate) fn u16(&mut self) -> Result<u16, CdrError> {
+        self.number(u16::from_le_bytes, u16::from_be_bytes)
+    }
+
     pub(crate) fn u32(&mut self) -> Result<u32, CdrError> {
         self.number(u32::from_le_bytes, u32::from_be_bytes)
     }

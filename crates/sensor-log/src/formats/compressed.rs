@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
-use crate::{LogEnd, LogError};
+use crate::{LogCompleteness, LogError};
 
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 
@@ -62,15 +62,15 @@ fn is_utf16(beginning: &[u8]) -> bool {
 }
 
 /// End of a compressed log that is truncated or damaged after `n_bytes` of text; `None` for other errors.
-pub(crate) fn end_of_damaged(path: &Path, error: &io::Error, n_bytes: u64) -> Option<LogEnd> {
+pub(crate) fn end_of_damaged(path: &Path, error: &io::Error, n_bytes: u64) -> Option<LogCompleteness> {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => {
             let file_bytes = fs::metadata(path).map_or(0, |metadata| metadata.len());
-            Some(LogEnd::Truncated { file_bytes, missing_bytes: 1 })
+            Some(LogCompleteness::Truncated { file_bytes, missing_bytes: 1 })
         }
         // Error kinds of the decoder for a corrupt stream or a wrong checksum.
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
-            Some(LogEnd::Damaged { byte: n_bytes, reason: error.to_string() })
+            Some(LogCompleteness::Damaged { byte: n_bytes, reason: error.to_string() })
         }
         _ => None,
     }

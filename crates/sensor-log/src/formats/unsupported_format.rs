@@ -71,7 +71,7 @@ pub(crate) fn check_folder(folder: &Path) -> Result<(), LogError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{LogError, OpenOptions, open};
+    use crate::{LogError, LogOpenOptions, open};
 
     #[test]
     fn foreign_formats_are_named_with_the_way_out() {
@@ -88,7 +88,7 @@ mod tests {
             let file = inside.join(name);
             std::fs::write(&file, head).unwrap();
             for path in [&file, &inside] {
-                let error = open(path, &OpenOptions::default()).unwrap_err();
+                let error = open(path, &LogOpenOptions::default()).unwrap_err();
                 assert!(matches!(error, LogError::UnsupportedFormat { .. }), "{error}");
                 assert!(error.to_string().contains(words), "{error}");
             }

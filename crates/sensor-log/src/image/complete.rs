@@ -1,6 +1,6 @@
-use super::{Anymap, ImageFormat};
+use super::{Anymap, ImageFileFormat};
 
-impl ImageFormat {
+impl ImageFileFormat {
     /// Whether a file reaches its end mark. Decoders fill missing pixels with grey without an error.
     pub(super) fn is_complete(self, bytes: &[u8]) -> bool {
         match self {

@@ -5,7 +5,7 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageReader, Limits};
 
 use super::huffman::with_huffman_tables;
-use super::{DecodedImage, EncodedImage, ImageError, ImageFormat, PixelLayout};
+use super::{DecodedImage, EncodedImage, ImageError, ImageFileFormat, PixelLayout};
 
 /// Pixels of the largest image that is decoded; a damaged or hostile header must not fill the memory.
 const MAX_PIXELS: u64 = 64 << 20;
@@ -65,7 +65,7 @@ impl EncodedImage {
     /// Returns the errors of [`decode_rgb`](Self::decode_rgb), and an error if the image is not a PNG of eight grey bits.
     pub fn decode_labels(&self) -> Result<DecodedImage, ImageError> {
         let color = self.decoder()?.original_color_type();
-        if self.format != ImageFormat::Png || color != ExtendedColorType::L8 {
+        if self.format != ImageFileFormat::Png || color != ExtendedColorType::L8 {
             return Err(ImageError::NotLabels { format: self.format, color });
         }
         self.decode_gray()
@@ -82,15 +82,15 @@ impl EncodedImage {
     /// A decoder that has read the header.
     fn decoder(&self) -> Result<impl ImageDecoder + '_, ImageError> {
         let format = match self.format {
-            ImageFormat::Jpeg => image::ImageFormat::Jpeg,
-            ImageFormat::Png => image::ImageFormat::Png,
-            ImageFormat::Pnm => image::ImageFormat::Pnm,
+            ImageFileFormat::Jpeg => image::ImageFormat::Jpeg,
+            ImageFileFormat::Png => image::ImageFormat::Png,
+            ImageFileFormat::Pnm => image::ImageFormat::Pnm,
         };
         let mut limits = Limits::default();
         limits.max_alloc = Some(MAX_BYTES);
         let bytes = match self.format {
-            ImageFormat::Jpeg => with_huffman_tables(&self.bytes),
-            ImageFormat::Png | ImageFormat::Pnm => Cow::Borrowed(&*self.bytes),
+            ImageFileFormat::Jpeg => with_huffman_tables(&self.bytes),
+            ImageFileFormat::Png | ImageFileFormat::Pnm => Cow::Borrowed(&*self.bytes),
         };
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits);
@@ -123,7 +123,7 @@ mod tests {
     fn png_of(image: impl Into<DynamicImage>) -> EncodedImage {
         let mut bytes = Cursor::new(Vec::new());
         image.into().write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-        EncodedImage::new(ImageFormat::Png, bytes.into_inner())
+        EncodedImage::new(ImageFileFormat::Png, bytes.into_inner())
     }
 
     #[test]
@@ -153,8 +153,8 @@ mod tests {
     #[test]
     fn what_is_of_another_format_than_it_says_is_an_error() {
         let jpeg = EncodedImage::jpeg(4, 4, &ramp(4, 4), 90).unwrap();
-        assert!(EncodedImage::new(ImageFormat::Png, jpeg.bytes).decode_rgb().is_err());
-        assert!(EncodedImage::new(ImageFormat::Jpeg, &b"GIF89a"[..]).size().is_err());
+        assert!(EncodedImage::new(ImageFileFormat::Png, jpeg.bytes).decode_rgb().is_err());
+        assert!(EncodedImage::new(ImageFileFormat::Jpeg, &b"GIF89a"[..]).size().is_err());
     }
 
     /// The header chunk has its checksum after 4 + 4 + 13 bytes; a decoder checks it first.
@@ -167,7 +167,7 @@ mod tests {
                 .fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
         });
         bytes[29..33].copy_from_slice(&(!crc).to_be_bytes());
-        EncodedImage::new(ImageFormat::Png, bytes)
+        EncodedImage::new(ImageFileFormat::Png, bytes)
     }
 
     #[test]
@@ -187,7 +187,7 @@ mod tests {
         let mut jpeg = EncodedImage::jpeg(4, 4, &ramp(4, 4), 90).unwrap().bytes.to_vec();
         let frame = jpeg.windows(2).position(|pair| pair == [0xFF, 0xC0]).unwrap();
         jpeg[frame + 5..frame + 9].fill(0xFF);
-        let error = EncodedImage::new(ImageFormat::Jpeg, jpeg).decode_rgb().unwrap_err();
+        let error = EncodedImage::new(ImageFileFormat::Jpeg, jpeg).decode_rgb().unwrap_err();
         assert!(matches!(error, ImageError::TooLarge { width: 65_535, height: 65_535, .. }), "{error}");
     }
 
@@ -211,7 +211,7 @@ mod tests {
         exif.extend([orientation, 0, 0, 0, 0, 0, 0]);
         let length = (exif.len() as u16 + 2).to_be_bytes();
         let bytes = [&jpeg.bytes[..2], &[0xFF, 0xE1], &length, &exif, &jpeg.bytes[2..]].concat();
-        EncodedImage::new(ImageFormat::Jpeg, bytes)
+        EncodedImage::new(ImageFileFormat::Jpeg, bytes)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::{Anymap, EncodedImage, ImageError, ImageFormat};
+use super::{Anymap, EncodedImage, ImageError, ImageFileFormat};
 
 impl EncodedImage {
     /// RGB pixels as JPEG of the given quality, 1 to 100; the same bytes on every machine.
@@ -13,7 +13,7 @@ impl EncodedImage {
         let mut bytes = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
         encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8).map_err(ImageError::Codec)?;
-        Ok(Self::new(ImageFormat::Jpeg, bytes))
+        Ok(Self::new(ImageFileFormat::Jpeg, bytes))
     }
 
     /// RGB pixels as PNG.
@@ -30,11 +30,11 @@ impl EncodedImage {
     /// Returns an error if an uncompressed image cannot be decoded.
     pub fn to_browser_format(&self) -> Result<Self, ImageError> {
         match (self.format, Anymap::of(&self.bytes)) {
-            (ImageFormat::Pnm, Some(Anymap { channels: 1, .. })) => {
+            (ImageFileFormat::Pnm, Some(Anymap { channels: 1, .. })) => {
                 let gray = self.decode_gray()?;
                 Self::png_gray(gray.width, gray.height, &gray.pixels)
             }
-            (ImageFormat::Pnm, _) => {
+            (ImageFileFormat::Pnm, _) => {
                 let rgb = self.decode_rgb()?;
                 Self::png_rgb(rgb.width, rgb.height, &rgb.pixels)
             }
@@ -55,7 +55,7 @@ impl EncodedImage {
 fn png(width: u32, height: u32, pixels: &[u8], color: ExtendedColorType) -> Result<EncodedImage, ImageError> {
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes).write_image(pixels, width, height, color).map_err(ImageError::Codec)?;
-    Ok(EncodedImage::new(ImageFormat::Png, bytes))
+    Ok(EncodedImage::new(ImageFileFormat::Png, bytes))
 }
 
 pub(super) fn check(width: u32, height: u32, channels: u32, pixels: &[u8]) -> Result<(), ImageError> {

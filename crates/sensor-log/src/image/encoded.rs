@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, PartialEq, Eq)]
 pub struct EncodedImage {
     /// Storage format.
-    pub format: ImageFormat,
+    pub format: ImageFileFormat,
     /// The file.
     pub bytes: Arc<[u8]>,
 }
@@ -23,7 +23,7 @@ pub struct EncodedImage {
 /// Storage format of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum ImageFormat {
+pub enum ImageFileFormat {
     /// JPEG, with loss.
     Jpeg,
     /// PNG, without.
@@ -59,7 +59,7 @@ impl PixelLayout {
     }
 }
 
-impl ImageFormat {
+impl ImageFileFormat {
     /// Its name; of compressed formats, as in `foxglove.CompressedImage` and `sensor_msgs/CompressedImage`.
     pub fn name(self) -> &'static str {
         match self {
@@ -82,22 +82,22 @@ impl ImageFormat {
 
 impl EncodedImage {
     /// Stores the file without decoding it.
-    pub fn new(format: ImageFormat, bytes: impl Into<Arc<[u8]>>) -> Self {
+    pub fn new(format: ImageFileFormat, bytes: impl Into<Arc<[u8]>>) -> Self {
         Self { format, bytes: bytes.into() }
     }
 
     /// Stores a file of the format that its first bytes tell; `None` if they tell none.
     pub fn from_bytes(bytes: impl Into<Arc<[u8]>>) -> Option<Self> {
         let bytes = bytes.into();
-        Some(Self { format: ImageFormat::of_bytes(&bytes)?, bytes })
+        Some(Self { format: ImageFileFormat::of_bytes(&bytes)?, bytes })
     }
 
     /// Its type on the web.
     pub fn media_type(&self) -> &'static str {
         match self.format {
-            ImageFormat::Jpeg => "image/jpeg",
-            ImageFormat::Png => "image/png",
-            ImageFormat::Pnm => "image/x-portable-anymap",
+            ImageFileFormat::Jpeg => "image/jpeg",
+            ImageFileFormat::Png => "image/png",
+            ImageFileFormat::Pnm => "image/x-portable-anymap",
         }
     }
 }

@@ -1,6 +1,6 @@
 use image::ExtendedColorType;
 
-use super::ImageFormat;
+use super::ImageFileFormat;
 
 /// Errors of encoding and decoding images.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum ImageError {
     #[error("labels are 8-bit grey PNG, this is {} with pixels {color:?}", format.name())]
     NotLabels {
         /// Its compression.
-        format: ImageFormat,
+        format: ImageFileFormat,
         /// Its pixel format.
         color: ExtendedColorType,
     },

@@ -1,4 +1,4 @@
-use super::{EncodedImage, ImageFormat};
+use super::{EncodedImage, ImageFileFormat};
 use crate::RowProblemKind;
 use crate::fault::Fault;
 use crate::formats::format::shortened;
@@ -16,14 +16,14 @@ pub(crate) fn picture(called: &str, bytes: &[u8]) -> Result<EncodedImage, Fault>
     if DEPTH.contains(&pixels) || called.contains("compressedDepth") {
         return refused("holds distances, which are no picture");
     }
-    let Some(format) = ImageFormat::of_bytes(bytes) else {
+    let Some(format) = ImageFileFormat::of_bytes(bytes) else {
         return refused("is neither JPEG nor PNG");
     };
     let image = EncodedImage::new(format, bytes);
     if pixels.starts_with("bayer_") && !(is_made_colour(called) && n_channels(&image) >= 3) {
         return refused("is the mosaic of a Bayer sensor; record the debayered images");
     }
-    let is_deep_grey = format == ImageFormat::Png
+    let is_deep_grey = format == ImageFileFormat::Png
         && image.layout().is_ok_and(|layout| layout.bits_per_channel > 8 && layout.channels <= 2);
     if is_deep_grey {
         return refused("has 16 bits of grey, which are distances or raw values");

@@ -11,7 +11,7 @@ mod pixels;
 mod pnm;
 mod summary;
 
-pub use encoded::{DecodedImage, EncodedImage, ImageFormat, PixelLayout};
+pub use encoded::{DecodedImage, EncodedImage, ImageFileFormat, PixelLayout};
 pub use error::ImageError;
 pub(crate) use message::picture;
 pub(crate) use pixels::Pixels;

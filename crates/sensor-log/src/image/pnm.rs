@@ -1,6 +1,6 @@
 //! Uncompressed images: portable anymaps, `P5` for grey and `P6` for colours, of eight bits a channel [netpbm, pgm(5) and ppm(5)].
 
-use super::{EncodedImage, ImageError, ImageFormat};
+use super::{EncodedImage, ImageError, ImageFileFormat};
 
 impl EncodedImage {
     /// RGB pixels after a short header with their number.
@@ -78,7 +78,7 @@ fn number(rest: &mut &[u8]) -> Option<u32> {
 
 fn pnm(magic: &str, width: u32, height: u32, pixels: &[u8]) -> EncodedImage {
     let header = format!("{magic}\n{width} {height}\n255\n");
-    EncodedImage::new(ImageFormat::Pnm, [header.as_bytes(), pixels].concat())
+    EncodedImage::new(ImageFileFormat::Pnm, [header.as_bytes(), pixels].concat())
 }
 
 #[cfg(test)]
@@ -90,7 +90,7 @@ mod tests {
         let bytes = b"P5 # made by hand\n# 7 7\n 2\t1 # wide\n255\n\x01\x02";
         let expected = Anymap { width: 2, height: 1, channels: 1, pixels: &[1, 2] };
         assert_eq!(Anymap::of(bytes), Some(expected));
-        let image = EncodedImage::new(ImageFormat::Pnm, &bytes[..]);
+        let image = EncodedImage::new(ImageFileFormat::Pnm, &bytes[..]);
         assert_eq!(image.decode_gray().unwrap().pixels, [1, 2]);
     }
 
@@ -99,7 +99,7 @@ mod tests {
         let whole = EncodedImage::pnm_rgb(3, 2, &[7; 18]).unwrap();
         assert_eq!(whole.size().unwrap(), (3, 2));
         for n_bytes in 0..whole.bytes.len() {
-            let cut = EncodedImage::new(ImageFormat::Pnm, &whole.bytes[..n_bytes]);
+            let cut = EncodedImage::new(ImageFileFormat::Pnm, &whole.bytes[..n_bytes]);
             assert!(cut.size().is_err() && cut.decode_rgb().is_err(), "cut after {n_bytes} bytes");
         }
         assert_eq!(Anymap::of(b"P5\n1 1\n65535\n\0\0"), None);
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn oversized_header_is_refused_before_allocation() {
-        let huge = EncodedImage::new(ImageFormat::Pnm, &b"P6\n4000000000 4000000000\n255\n123"[..]);
+        let huge = EncodedImage::new(ImageFileFormat::Pnm, &b"P6\n4000000000 4000000000\n255\n123"[..]);
         assert!(huge.decode_rgb().is_err());
     }
 }

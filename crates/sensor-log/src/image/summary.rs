@@ -1,15 +1,15 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::{EncodedImage, ImageFormat};
+use super::{EncodedImage, ImageFileFormat};
 
 /// Image statistics from the headers; `Display` prints them for people.
 /// ```
-/// use wayfix_sensor_log::{EncodedImage, ImageFormat, LogImageStatistics};
+/// use wayfix_sensor_log::{EncodedImage, ImageFileFormat, LogImageStatistics};
 /// let mut summary = LogImageStatistics::default();
 /// summary.add(&EncodedImage::png_gray(3, 2, &[0; 6])?);
-/// summary.add(&EncodedImage::new(ImageFormat::Jpeg, &[0xFF, 0xD8, 0xFF][..]));
-/// assert_eq!(summary.sizes[&(ImageFormat::Png, 3, 2)], 1);
+/// summary.add(&EncodedImage::new(ImageFileFormat::Jpeg, &[0xFF, 0xD8, 0xFF][..]));
+/// assert_eq!(summary.sizes[&(ImageFileFormat::Png, 3, 2)], 1);
 /// assert_eq!(summary.n_damaged, 1);
 /// # Ok::<(), wayfix_sensor_log::ImageError>(())
 /// ```
@@ -17,7 +17,7 @@ use super::{EncodedImage, ImageFormat};
 #[non_exhaustive]
 pub struct LogImageStatistics {
     /// Number of images of each format, width and height.
-    pub sizes: BTreeMap<(ImageFormat, u32, u32), u64>,
+    pub sizes: BTreeMap<(ImageFileFormat, u32, u32), u64>,
     /// Number of images with an unreadable or truncated header.
     pub n_damaged: u64,
     /// Bytes of all of them.

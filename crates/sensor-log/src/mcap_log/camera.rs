@@ -9,7 +9,7 @@ use super::topics;
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::formats::format::shortened;
 use crate::image::{Anymap, Pixels, picture};
-use crate::{CameraInfo, EncodedImage, ImageFormat, LogError, Record, RecordData, Stamp};
+use crate::{CameraInfo, EncodedImage, ImageFileFormat, LogError, Record, RecordData, Stamp};
 
 /// Rejects records that a reader could not restore.
 pub(super) fn check(record: &Record) -> Result<(), LogError> {
@@ -21,7 +21,7 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
         }
         RecordData::Image(image) if !is_image(image) => Err(no_image(record, image)),
         // Labels must be compressed; an uncompressed image has another message type.
-        RecordData::TrueLabels(image) if !is_image(image) || image.format == ImageFormat::Pnm => {
+        RecordData::TrueLabels(image) if !is_image(image) || image.format == ImageFileFormat::Pnm => {
             Err(no_image(record, image))
         }
         _ => Ok(()),
@@ -31,8 +31,8 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
 fn is_image(image: &EncodedImage) -> bool {
     let has_pixels = |anymap: Anymap<'_>| anymap.width > 0 && anymap.height > 0 && anymap.is_complete();
     let is_complete = || Anymap::of(&image.bytes).is_some_and(has_pixels);
-    ImageFormat::of_bytes(&image.bytes) == Some(image.format)
-        && (image.format != ImageFormat::Pnm || is_complete())
+    ImageFileFormat::of_bytes(&image.bytes) == Some(image.format)
+        && (image.format != ImageFileFormat::Pnm || is_complete())
 }
 
 fn no_image(record: &Record, image: &EncodedImage) -> LogError {

@@ -3,7 +3,7 @@ use std::io::{self, Read};
 use mcap::MAGIC;
 use mcap::records::op;
 
-use crate::LogEnd;
+use crate::LogCompleteness;
 
 /// No sane writer makes larger chunks or messages; a damaged length must not fill the memory.
 pub(super) const MAX_RECORD_BYTES: usize = 128 << 20;
@@ -33,9 +33,9 @@ pub(super) enum Frame {
     /// A chunk, schema, channel, message or metadata, whole.
     Record { opcode: u8, body: Vec<u8> },
     /// The beginning of a chunk after which the file breaks off.
-    TruncatedChunk { body: Vec<u8>, end: LogEnd },
+    TruncatedChunk { body: Vec<u8>, end: LogCompleteness },
     /// No more records.
-    End(LogEnd),
+    End(LogCompleteness),
 }
 
 impl<R: Read> Frames<R> {
@@ -59,7 +59,7 @@ impl<R: Read> Frames<R> {
                 }
             }
         }
-        Frame::End(LogEnd::Complete)
+        Frame::End(LogCompleteness::Complete)
     }
 
     fn step(&mut self) -> io::Result<Option<Frame>> {
@@ -113,7 +113,7 @@ impl<R: Read> Frames<R> {
         }
         let n_magic = self.read_up_to(MAGIC.len() as u64, &mut Vec::new())?;
         Ok(Some(Frame::End(match MAGIC.len() as u64 - n_magic {
-            0 => LogEnd::Complete,
+            0 => LogCompleteness::Complete,
             missing => self.truncated_by(missing),
         })))
     }
@@ -130,7 +130,7 @@ impl<R: Read> Frames<R> {
         data_end + FOOTER_BYTES + MAGIC.len() as u64
     }
 
-    fn truncated_in_head(&mut self, opcode: Option<u8>, n_head: u64) -> LogEnd {
+    fn truncated_in_head(&mut self, opcode: Option<u8>, n_head: u64) -> LogCompleteness {
         let owed = match opcode {
             None | Some(op::DATA_END | op::FOOTER) => self.owed() - n_head,
             Some(_) => HEAD_BYTES as u64 - n_head + self.owed(),
@@ -138,15 +138,15 @@ impl<R: Read> Frames<R> {
         self.truncated_by(owed)
     }
 
-    fn truncated(&self, missing_of_record: u64) -> LogEnd {
+    fn truncated(&self, missing_of_record: u64) -> LogCompleteness {
         self.truncated_by(missing_of_record.saturating_add(self.owed()))
     }
 
-    fn truncated_by(&self, missing_bytes: u64) -> LogEnd {
-        LogEnd::Truncated { file_bytes: self.offset, missing_bytes }
+    fn truncated_by(&self, missing_bytes: u64) -> LogCompleteness {
+        LogCompleteness::Truncated { file_bytes: self.offset, missing_bytes }
     }
 
     fn damaged(&self, reason: String) -> Frame {
-        Frame::End(LogEnd::Damaged { byte: self.offset, reason })
+        Frame::End(LogCompleteness::Damaged { byte: self.offset, reason })
     }
 }

@@ -3,6 +3,7 @@
 mod camera;
 mod cloud;
 mod frames;
+mod measurement;
 mod origin;
 mod reading;
 mod record;
@@ -11,9 +12,9 @@ pub mod topics;
 mod vehicle;
 mod writing;
 
-pub use reading::file::McapFile;
+pub use reading::file::McapMessageSink;
 pub(crate) use reading::folder::{files_in, files_of};
 pub(crate) use reading::reader::McapRecords;
 pub use writing::drawing::{DrawingShape, ImageOutline, ViewerDrawing};
-pub use writing::sink::{ChannelKey, Message, MessageSink, MessageSinks};
-pub use writing::writer::{McapWriter, MessageWriter};
+pub use writing::sink::{ChannelKey, FoxgloveMessage, FoxgloveMessageSink, MessageSinks};
+pub use writing::writer::{FoxgloveMessageWriter, McapWriter};

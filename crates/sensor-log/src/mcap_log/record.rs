@@ -1,7 +1,9 @@
-use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::encode};
-use crate::{ImageFormat, LogError, Record, RecordData};
+use super::{
+    FoxgloveMessageSink, FoxgloveMessageWriter, camera, measurement, scan, topics, vehicle, writing::encode,
+};
+use crate::{ImageFileFormat, LogError, Record, RecordData};
 
-impl<S: MessageSink> MessageWriter<S> {
+impl<S: FoxgloveMessageSink> FoxgloveMessageWriter<S> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading restores it to the bit (negative zeros lose their sign).
     /// # Errors
     /// Returns an error if a number is not finite, a camera has no pixels or no focal length, an image does not have its stated format, true
@@ -50,6 +52,9 @@ impl<S: MessageSink> MessageWriter<S> {
             RecordData::EstimatedPose(pose) => {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
             }
+            RecordData::PoseMeasurement(measured) => {
+                self.message(topics::POSE_MEASUREMENT, stamp, &measurement::encode(timestamp, measured))
+            }
             RecordData::TrueLandmark(_) | RecordData::TrueWall(_) => Ok(()),
             RecordData::CameraInfo(info) => {
                 self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
@@ -58,7 +63,7 @@ impl<S: MessageSink> MessageWriter<S> {
                 self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
                 self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
             }
-            RecordData::Image(image) if image.format == ImageFormat::Pnm => {
+            RecordData::Image(image) if image.format == ImageFileFormat::Pnm => {
                 self.message(topics::IMAGE, stamp, &camera::encode_raw_image(timestamp, image))
             }
             RecordData::Image(image) => {

@@ -12,6 +12,7 @@
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`RecordData::TruePose`](crate::RecordData::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`RecordData::TrueLandmark`](crate::RecordData::TrueLandmark) |
 //! | [`TRUE_WALLS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `end_x`, `end_y`, `id` | [`WORLD_FRAME`] | [`RecordData::TrueWall`](crate::RecordData::TrueWall) |
+//! | [`POSE_MEASUREMENT`] | `foxglove.PointCloud` with `x`, `y`, `z`, `heading`, `kind` and the covariance | any | [`RecordData::PoseMeasurement`](crate::RecordData::PoseMeasurement) |
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`RecordData::EstimatedPose`](crate::RecordData::EstimatedPose) |
 //! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`RecordData::CameraInfo`](crate::RecordData::CameraInfo) |
 //! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`RecordData::CameraMount`](crate::RecordData::CameraMount) |
@@ -52,6 +53,8 @@ pub const TRUE_POSE: &str = "/truth/pose";
 pub const TRUE_LANDMARKS: &str = "/truth/landmarks";
 /// True positions of the walls.
 pub const TRUE_WALLS: &str = "/truth/walls";
+/// Measurements of the pose by sensors that do not use the map.
+pub const POSE_MEASUREMENT: &str = "/measured/pose";
 /// Pose estimates of some program.
 pub const ESTIMATED_POSE: &str = "/estimate/pose";
 

@@ -30,6 +30,12 @@ impl<'a> FromCdr<'a> for Twist {
     }
 }
 
+/// The covariance of `(x, y, θ)`, row by row, of the six coordinates of a pose.
+pub(super) fn planar_covariance(cdr: &mut CdrReader<'_>) -> Result<[f64; 9], CdrError> {
+    let all: [f64; 36] = cdr.f64_array()?;
+    Ok([0, 1, 5, 6, 7, 11, 30, 31, 35].map(|index| all[index]))
+}
+
 /// Passes over the covariance of a pose or a twist.
 pub(super) fn pass_over_covariance(cdr: &mut CdrReader<'_>) -> Result<(), CdrError> {
     cdr.f64_array::<36>().map(drop)

@@ -9,6 +9,7 @@ mod header;
 mod images;
 mod laser_scan;
 mod odometry;
+mod position;
 mod schema;
 mod stamped;
 
@@ -19,5 +20,6 @@ pub use header::Header;
 pub use images::{CompressedImage, Image};
 pub use laser_scan::LaserScan;
 pub use odometry::Odometry;
+pub use position::{Imu, NavSatFix};
 pub use schema::{RosMessage, RosSchema};
 pub use stamped::{PoseStamped, TransformStamped, TwistStamped};

@@ -1,6 +1,6 @@
 use super::{
-    CameraInfo, CompressedImage, Image, LaserScan, Odometry, PoseStamped, TransformStamped, Twist,
-    TwistStamped,
+    CameraInfo, CompressedImage, Image, Imu, LaserScan, NavSatFix, Odometry, PoseStamped, TransformStamped,
+    Twist, TwistStamped,
 };
 use crate::cdr::{CdrError, CdrReader, FromCdr};
 
@@ -39,6 +39,10 @@ pub enum RosSchema {
     TwistStamped,
     /// `geometry_msgs/msg/Twist`
     Twist,
+    /// `sensor_msgs/msg/NavSatFix`
+    NavSatFix,
+    /// `sensor_msgs/msg/Imu`
+    Imu,
     /// `tf2_msgs/msg/TFMessage`
     Transforms,
 }
@@ -61,6 +65,10 @@ pub enum RosMessage<'a> {
     Pose(PoseStamped<'a>),
     /// A velocity, from a message with or without a header.
     Twist(TwistStamped<'a>),
+    /// A fix of a satellite receiver.
+    NavSatFix(NavSatFix<'a>),
+    /// The orientation of an IMU.
+    Imu(Imu<'a>),
     /// Poses of frames in other frames.
     Transforms(Vec<TransformStamped<'a>>),
 }
@@ -79,6 +87,8 @@ impl RosSchema {
             ("geometry_msgs", "PoseWithCovarianceStamped") => Some(Self::PoseWithCovarianceStamped),
             ("geometry_msgs", "TwistStamped") => Some(Self::TwistStamped),
             ("geometry_msgs", "Twist") => Some(Self::Twist),
+            ("sensor_msgs", "NavSatFix") => Some(Self::NavSatFix),
+            ("sensor_msgs", "Imu") => Some(Self::Imu),
             ("tf2_msgs", "TFMessage") => Some(Self::Transforms),
             _ => None,
         }
@@ -101,6 +111,8 @@ impl RosSchema {
             Self::PoseWithCovarianceStamped => RosMessage::Pose(PoseStamped::read_with_covariance(cdr)?),
             Self::TwistStamped => RosMessage::Twist(TwistStamped::read(cdr)?),
             Self::Twist => RosMessage::Twist(TwistStamped { header: None, twist: Twist::read(cdr)? }),
+            Self::NavSatFix => RosMessage::NavSatFix(NavSatFix::read(cdr)?),
+            Self::Imu => RosMessage::Imu(Imu::read(cdr)?),
             Self::Transforms => RosMessage::Transforms(cdr.sequence()?),
         })
     }

@@ -1,14 +1,16 @@
-use super::geometry::pass_over_covariance;
+use super::geometry::planar_covariance;
 use super::{Header, Pose, Twist};
 use crate::cdr::{CdrError, CdrReader, FromCdr};
 
-/// `geometry_msgs/PoseStamped`; of a `PoseWithCovarianceStamped` the same, without the covariance.
+/// `geometry_msgs/PoseStamped`, or `PoseWithCovarianceStamped`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseStamped<'a> {
     /// Stamp, and the frame of the pose.
     pub header: Header<'a>,
     /// The pose.
     pub pose: Pose,
+    /// Of `(x, y, θ)`, m and rad, row by row, where the message has one.
+    pub covariance: Option<[f64; 9]>,
 }
 
 /// `geometry_msgs/TwistStamped`, or a bare `Twist`.
@@ -33,7 +35,7 @@ pub struct TransformStamped<'a> {
 
 impl<'a> FromCdr<'a> for PoseStamped<'a> {
     fn read(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
-        Ok(Self { header: Header::read(cdr)?, pose: Pose::read(cdr)? })
+        Ok(Self { header: Header::read(cdr)?, pose: Pose::read(cdr)?, covariance: None })
     }
 }
 
@@ -41,8 +43,7 @@ impl<'a> PoseStamped<'a> {
     /// The message that has a covariance behind the pose.
     pub(super) fn read_with_covariance(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
         let stamped = Self::read(cdr)?;
-        pass_over_covariance(cdr)?;
-        Ok(stamped)
+        Ok(Self { covariance: Some(planar_covariance(cdr)?), ..stamped })
     }
 }
 

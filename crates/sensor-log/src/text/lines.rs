@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::RowError;
 use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
-use crate::{LogEnd, LogError, ReadReport, RowProblem, RowProblemKind};
+use crate::{LogCompleteness, LogError, ReadReport, RowProblem, RowProblemKind};
 
 /// Maximum length of a row, in bytes. Rows of known formats are shorter: scanners of 1,440 beams print about 20 kB with remissions.
 const MAX_LINE_BYTES: usize = 64 << 10;
@@ -103,7 +103,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// End of the log after a read error; a damaged file keeps the records read before.
-    pub(crate) fn end_after(&self, error: LogError) -> Result<LogEnd, LogError> {
+    pub(crate) fn end_after(&self, error: LogError) -> Result<LogCompleteness, LogError> {
         match &error {
             LogError::Io { source, .. } => end_of_damaged(&self.path, source, self.n_bytes).ok_or(error),
             _ => Err(error),

@@ -18,7 +18,8 @@ use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
 use crate::{
-    LaserScan, LogEnd, LogError, LogFormat, PoseKind, ReadReport, Record, RecordData, RowProblemKind, Stamp,
+    LaserScan, LogCompleteness, LogError, LogFormat, PoseKind, ReadReport, Record, RecordData,
+    RowProblemKind, Stamp,
 };
 
 /// Maximum size of a file, in bytes; it bounds the memory used.
@@ -102,13 +103,13 @@ fn entries(text: &[u8], report: &mut ReadReport) -> Vec<(String, Value)> {
     let read = Document(&mut entries).deserialize(&mut json).and_then(|()| json.end());
     match read {
         // A truncated file is already reported.
-        Err(error) if report.end == LogEnd::Complete => {
+        Err(error) if report.end == LogCompleteness::Complete => {
             let line_start = text.split_inclusive(|byte| *byte == b'\n').take(error.line().saturating_sub(1));
             let byte = line_start.map(<[u8]>::len).sum::<usize>() + error.column();
             report.end = if error.is_eof() {
-                LogEnd::Truncated { file_bytes: text.len() as u64, missing_bytes: 1 }
+                LogCompleteness::Truncated { file_bytes: text.len() as u64, missing_bytes: 1 }
             } else {
-                LogEnd::Damaged { byte: byte as u64, reason: error.to_string() }
+                LogCompleteness::Damaged { byte: byte as u64, reason: error.to_string() }
             };
         }
         _ => {}

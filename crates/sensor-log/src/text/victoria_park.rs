@@ -4,13 +4,14 @@
 //! | --- | --- |
 //! | `odometry.csv` | `t_s,speed_mps,steering_rad`: the encoder of the rear left wheel and the steering |
 //! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead; a fifth column `landmark`, which may be there, says which tree it is, and is empty where nobody knows |
-//! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna; the file may be missing |
+//! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna, which are the truth; a fourth column `sigma_m`, which may be there, makes a fix a measurement with this standard deviation where it is not empty; the file may be missing |
 //!
 //! Bearings follow REP 103, 0 ahead, and are relative to the laser, which is 3.78 m ahead of the rear axle and 0.5 m left.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use nalgebra::{Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::wrap_angle;
 
 use super::Lines;
@@ -18,9 +19,10 @@ use super::gps::drop_jumps;
 use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::format::shortened;
+use crate::topics::WORLD_FRAME;
 use crate::{
-    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, Stamp,
-    TruePosition,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, MeasuredQuantity, PoseMeasurement,
+    ReadReport, Record, RecordData, Stamp, TruePosition,
 };
 
 const ODOMETRY: &str = "odometry.csv";
@@ -63,7 +65,7 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
         Ok((stamp, (width, Detection { target, range, bearing })))
     };
-    let trees = if is_labelled(path)? {
+    let trees = if has_columns::<5>(path)? {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m", "landmark"];
         read_rows(path, header, report, |[t, range, bearing, diameter, landmark]| {
             let target = if landmark.is_empty() {
@@ -90,23 +92,45 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     Ok(looks.into_iter().flat_map(to_records).collect())
 }
 
-/// Whether the header has a column of tree identities.
-fn is_labelled(path: &Path) -> Result<bool, LogError> {
+/// Whether the header has this many columns.
+fn has_columns<const N: usize>(path: &Path) -> Result<bool, LogError> {
     let mut lines = Lines::open(path)?;
     let header = lines.next_row()?;
-    Ok(header.and_then(|row| row.text.ok()).is_some_and(|text| comma_columns::<5>(text).is_ok()))
+    Ok(header.and_then(|row| row.text.ok()).is_some_and(|text| comma_columns::<N>(text).is_ok()))
 }
 
 fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let read = read_rows(path, ["t_s", "x_m", "y_m"], report, |[t, x, y]| {
-        Ok((stamp(t)?, TruePosition { x: number(x)?, y: number(y)? }))
-    });
-    let fixes = match read {
-        Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
-        rows => rows?.into_iter().map(|Timed { row, stamp, item }| (row, stamp, item)),
+    let take = |[t, x, y]: [&str; 3], sigma: Option<f64>| {
+        Ok((stamp(t)?, (TruePosition { x: number(x)?, y: number(y)? }, sigma)))
     };
+    let read = match has_columns::<4>(path) {
+        Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
+        Ok(true) => read_rows(path, ["t_s", "x_m", "y_m", "sigma_m"], report, |[t, x, y, sigma]| {
+            let sigma = if sigma.is_empty() { None } else { Some(number(sigma)?) };
+            take([t, x, y], sigma)
+        }),
+        _ => read_rows(path, ["t_s", "x_m", "y_m"], report, |row| take(row, None)),
+    };
+    let (mut fixes, mut records) = (Vec::new(), Vec::new());
+    for Timed { row, stamp, item: (position, sigma) } in read? {
+        match sigma {
+            None => fixes.push((row, stamp, position)),
+            Some(sigma) => records.push(Record { stamp, data: measured(&position, sigma) }),
+        }
+    }
     let to_record = |(stamp, position)| Record { stamp, data: RecordData::TruePosition(position) };
-    Ok(drop_jumps(GPS, fixes.collect(), report).into_iter().map(to_record).collect())
+    records.extend(drop_jumps(GPS, fixes, report).into_iter().map(to_record));
+    Ok(records)
+}
+
+/// A fix that corrects the robot.
+fn measured(position: &TruePosition, sigma: f64) -> RecordData {
+    let variance = Vector3::new(sigma * sigma, sigma * sigma, 0.0);
+    RecordData::PoseMeasurement(PoseMeasurement {
+        frame: WORLD_FRAME.to_owned(),
+        quantity: MeasuredQuantity::Position(Vector2::new(position.x, position.y)),
+        covariance: Some(Matrix3::from_diagonal(&variance)),
+    })
 }
 
 /// The rows below the header in time order.

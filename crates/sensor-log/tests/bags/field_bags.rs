@@ -9,7 +9,7 @@ use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transf
 use crate::common::cdr::Encoder;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
+    LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
 };
 
 const SECOND: u64 = 1_000_000_000;
@@ -56,7 +56,7 @@ fn put_file(folder: &Path, name: &str, bytes: &[u8]) {
 }
 
 fn read_folder(folder: &Path) -> (Vec<Record>, ReadReport) {
-    open(folder, &OpenOptions::default()).unwrap().read_all()
+    open(folder, &LogOpenOptions::default()).unwrap().read_all()
 }
 
 fn scan_seconds(records: &[Record]) -> Vec<u64> {

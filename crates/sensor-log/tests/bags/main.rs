@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod external_sensors;
 mod field_bags;
 mod ros_bags;
 mod ros_messages;

@@ -11,8 +11,8 @@ use crate::common::bag::{
 use mcap::WriteOptions;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, LogSummary, OpenOptions, Record, RecordData, RowProblemKind, TopicUse,
-    convert, open,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, LogSummary, Record, RecordData, RowProblemKind,
+    TopicUse, convert, open,
 };
 
 const DRIVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/ros2_drive.mcap");
@@ -23,7 +23,7 @@ fn kinds(records: &[Record]) -> Vec<&str> {
 
 #[test]
 fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
-    let log = open(DRIVE, &OpenOptions::default()).unwrap();
+    let log = open(DRIVE, &LogOpenOptions::default()).unwrap();
     let uses: Vec<(String, TopicUse)> =
         log.meta().topics.iter().map(|topic| (topic.name.clone(), topic.r#use.clone())).collect();
     let expected = [
@@ -86,14 +86,14 @@ fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
 fn a_bag_converted_to_foxglove_reads_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("converted.mcap");
-    let from_bag = open(DRIVE, &OpenOptions::default()).unwrap();
-    let records = open(DRIVE, &OpenOptions::default()).unwrap().read_all().0;
+    let from_bag = open(DRIVE, &LogOpenOptions::default()).unwrap();
+    let records = open(DRIVE, &LogOpenOptions::default()).unwrap().read_all().0;
     convert(from_bag, &path, LogFormat::Mcap).unwrap();
-    let (back, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
+    let (back, report) = open(&path, &LogOpenOptions::default()).unwrap().read_all();
     // Scans hold NaN where nothing came back, so they are compared as they are printed.
     assert_eq!(format!("{back:?}"), format!("{records:?}"));
     assert!(report.is_clean(), "{report}");
-    let text = LogSummary::of(open(&path, &OpenOptions::default()).unwrap()).to_string();
+    let text = LogSummary::of(open(&path, &LogOpenOptions::default()).unwrap()).to_string();
     assert!(text.contains("image: 3 pnm of 16 x 12 pixels"), "{text}");
 }
 
@@ -102,18 +102,18 @@ fn a_folder_is_the_bag_in_it_unless_there_are_several() {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(DRIVE, folder.path().join("bag_0.mcap")).unwrap();
     fs::write(folder.path().join("metadata.yaml"), "rosbag2_bagfile_information:\n").unwrap();
-    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    let log = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!(log.meta().source, folder.path().join("bag_0.mcap"));
     assert_eq!(log.count(), 88);
     fs::copy(DRIVE, folder.path().join("other.mcap")).unwrap();
-    let error = open(folder.path(), &OpenOptions::default()).unwrap_err();
+    let error = open(folder.path(), &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(&error, LogError::SeveralFiles { files, .. } if files.len() == 2), "{error}");
 }
 
 #[test]
 fn another_laser_is_read_when_it_is_asked_for() {
     let topics = vec!["/scan_rear".to_owned()];
-    let log = open(DRIVE, &OpenOptions { topics, ..Default::default() }).unwrap();
+    let log = open(DRIVE, &LogOpenOptions { topics, ..Default::default() }).unwrap();
     let scans = log.filter(|record| matches!(record.data, RecordData::Scan(_))).count();
     assert_eq!(scans, 3);
 }
@@ -132,7 +132,7 @@ fn topics_that_cannot_be_had_are_told_with_those_that_can() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.txt");
     fs::write(&path, "O 1 0 0\n").unwrap();
-    let options = OpenOptions { topics: vec!["/scan".to_owned()], ..Default::default() };
+    let options = LogOpenOptions { topics: vec!["/scan".to_owned()], ..Default::default() };
     let error = open(Path::new(&path), &options).unwrap_err();
     assert!(matches!(error, LogError::NoTopics { format: LogFormat::RangeBearing, .. }), "{error}");
 }
@@ -143,7 +143,7 @@ fn a_bag_without_an_index_is_surveyed_message_by_message() {
     let (records, _) = read(&whole, &["/scan_rear"]).unwrap();
     // Without the end mark there is no index to be found.
     let (again, report) = read(&whole[..whole.len() - 1], &["/scan_rear"]).unwrap();
-    assert!(matches!(report.end, LogEnd::Truncated { missing_bytes: 1, .. }), "{report}");
+    assert!(matches!(report.end, LogCompleteness::Truncated { missing_bytes: 1, .. }), "{report}");
     assert_eq!(format!("{again:?}"), format!("{records:?}"));
 }
 

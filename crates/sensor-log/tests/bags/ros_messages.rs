@@ -80,8 +80,12 @@ fn expected(schema: RosSchema) -> RosMessage<'static> {
             binning: [2, 1],
             region: [4, 5, 7, 6],
         }),
-        RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped => {
-            RosMessage::Pose(PoseStamped { header: header("map"), pose: POSE })
+        RosSchema::PoseStamped => {
+            RosMessage::Pose(PoseStamped { header: header("map"), pose: POSE, covariance: None })
+        }
+        RosSchema::PoseWithCovarianceStamped => {
+            let covariance = Some([0.0, 1.0, 5.0, 6.0, 7.0, 11.0, 30.0, 31.0, 35.0]);
+            RosMessage::Pose(PoseStamped { header: header("map"), pose: POSE, covariance })
         }
         RosSchema::TwistStamped => {
             RosMessage::Twist(TwistStamped { header: Some(header("base_link")), twist: TWIST })

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use crate::common::bag::{Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, scan, transforms};
 use wayfix_sensor_log::{
-    LogEnd, LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, Stamp, Velocity, open,
-    open_all, write,
+    LogCompleteness, LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, Stamp, Velocity,
+    open, open_all, write,
 };
 
 const STEPS: i32 = 40;
@@ -55,7 +55,7 @@ fn a_recording_that_was_split_reads_like_the_whole_bit_for_bit() {
         let (from, to) = (1 + 3 * part, (4 + 3 * part).min(STEPS));
         file(folder.path(), &format!("part_{part}.mcap"), &bag(from..to, |_| true));
     }
-    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    let log = open(folder.path(), &LogOpenOptions::default()).unwrap();
     assert_eq!((log.meta().source.as_path(), log.meta().files.len()), (folder.path(), 13));
     let scans = log.meta().topics.iter().find(|topic| topic.name == "/scan").unwrap().n_messages;
     assert_eq!(scans, STEPS as u64 - 1, "of all files together");
@@ -68,7 +68,7 @@ fn a_recording_that_was_split_reads_like_the_whole_bit_for_bit() {
     let mut files: Vec<PathBuf> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort_by_key(|path| std::cmp::Reverse(path.clone()));
-    assert_eq!(open_all(&files, &OpenOptions::default()).unwrap().read_all(), expected);
+    assert_eq!(open_all(&files, &LogOpenOptions::default()).unwrap().read_all(), expected);
 }
 
 #[test]
@@ -77,16 +77,16 @@ fn two_recorders_at_a_time_read_like_one() {
     let laser = file(folder.path(), "laser.mcap", &bag(1..STEPS, |topic| topic == "/scan"));
     let rest = file(folder.path(), "base.mcap", &bag(1..STEPS, |topic| topic != "/scan"));
     for files in [[&laser, &rest], [&rest, &laser]] {
-        let (records, report) = open_all(&files, &OpenOptions::default()).unwrap().read_all();
+        let (records, report) = open_all(&files, &LogOpenOptions::default()).unwrap().read_all();
         assert_eq!(records, whole().0);
         assert!(report.is_clean(), "{report}");
     }
-    let error = open(folder.path(), &OpenOptions::default()).unwrap_err();
+    let error = open(folder.path(), &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(error, LogError::SeveralFiles { .. }), "nothing says that they belong together");
     let metadata = "  relative_file_paths:\n    - base.mcap\n    - laser.mcap\n";
     fs::write(folder.path().join("metadata.yaml"), metadata).unwrap();
     file(folder.path(), "merged.mcap", &bag(1..STEPS, |_| true));
-    let (records, _) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, _) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records, whole().0, "the one that the metadata does not name is not read");
 }
 
@@ -103,7 +103,7 @@ fn our_own_logs_are_read_in_parts_too() {
         write(path, LogFormat::Mcap, records.clone()).unwrap();
     }
     let [a, b, c] = &paths;
-    let (records, report) = open_all(&[c, a, b], &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open_all(&[c, a, b], &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records, parts.concat());
     assert_eq!(report.rows_read, 900);
 }
@@ -114,14 +114,14 @@ fn a_part_that_breaks_off_is_told_and_the_others_are_read() {
     let first = bag(1..20, |_| true);
     file(folder.path(), "drive_0.mcap", &first[..first.len() - 60]);
     file(folder.path(), "drive_1.mcap", &bag(20..STEPS, |_| true));
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records, whole().0, "only the index is missing");
-    assert!(matches!(report.end, LogEnd::Truncated { .. }), "{report}");
+    assert!(matches!(report.end, LogCompleteness::Truncated { .. }), "{report}");
 
     let mut other = Bag::new();
     other.put("/amcl_pose", POSE, 60 * SECOND, pose(60, [f64::NAN, 0.0, 0.0]));
     file(folder.path(), "drive_2.mcap", &other.finish());
-    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!(records, whole().0);
     let told: Vec<(&str, u64)> = report.examples.iter().map(|told| (told.file.as_str(), told.row)).collect();
     assert_eq!(told, [("drive_2.mcap", 1)]);
@@ -133,10 +133,10 @@ fn what_cannot_be_parts_is_refused_by_name() {
     let part = file(folder.path(), "drive_0.mcap", &bag(1..5, |_| true));
     let text = file(folder.path(), "walk.txt", b"O 1 0 0\n");
     let none: [&Path; 0] = [];
-    assert!(matches!(open_all(&none, &OpenOptions::default()), Err(LogError::NoPath)));
-    let error = open_all(&[&part, &text], &OpenOptions::default()).unwrap_err();
+    assert!(matches!(open_all(&none, &LogOpenOptions::default()), Err(LogError::NoPath)));
+    let error = open_all(&[&part, &text], &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(&error, LogError::NotAPart { path, .. } if *path == text), "{error}");
     let missing = folder.path().join("drive_1.mcap");
-    let error = open_all(&[&part, &missing], &OpenOptions::default()).unwrap_err();
+    let error = open_all(&[&part, &missing], &LogOpenOptions::default()).unwrap_err();
     assert!(matches!(error, LogError::NotFound { .. }), "{error}");
 }

@@ -8,7 +8,7 @@ use std::io::Cursor;
 
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
-use wayfix_sensor_log::{LogError, OpenOptions, ReadReport, Record, open};
+use wayfix_sensor_log::{LogError, LogOpenOptions, ReadReport, Record, open};
 
 use super::cdr::Encoder;
 
@@ -61,7 +61,7 @@ pub(crate) fn read(bytes: &[u8], topics: &[&str]) -> Result<(Vec<Record>, ReadRe
     let path = folder.path().join("bag.mcap");
     fs::write(&path, bytes).unwrap();
     let topics = topics.iter().map(|&topic| topic.to_owned()).collect();
-    open(&path, &OpenOptions { topics, ..Default::default() }).map(|log| log.read_all())
+    open(&path, &LogOpenOptions { topics, ..Default::default() }).map(|log| log.read_all())
 }
 
 /// A message that begins with a header of so many seconds.

@@ -25,6 +25,10 @@ impl Encoder {
         self.body.push(value);
     }
 
+    pub(crate) fn u16(&mut self, value: u16) {
+        self.number(value.to_be_bytes());
+    }
+
     pub(crate) fn u32(&mut self, value: u32) {
         self.number(value.to_be_bytes());
     }

@@ -5,9 +5,9 @@ use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, Ro
 
 /// The sensor reads identities: bar codes, tags, a simulator.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct KnownIds;
+pub struct KnownIdAssociation;
 
-impl<M: LandmarkModel> DataAssociation<M> for KnownIds
+impl<M: LandmarkModel> DataAssociation<M> for KnownIdAssociation
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {

@@ -1,5 +1,6 @@
 //! Data association: one rule per file, all behind [`DataAssociation`].
 
+mod any;
 mod candidates;
 mod joint_compatibility;
 mod joint_innovation;
@@ -10,8 +11,9 @@ mod new_ids;
 
 use nalgebra::DefaultAllocator;
 
+pub use any::AnyAssociation;
 pub use joint_compatibility::{JointCompatibility, JointCompatibilityParams};
-pub use known_ids::KnownIds;
+pub use known_ids::KnownIdAssociation;
 pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};
 
 use new_ids::NewIds;

@@ -6,7 +6,7 @@ use super::{
 };
 
 impl JointCovariance {
-    /// Corrects with all rows of `jacobian` at once and returns the step $`K ν`$ of the mean.
+    /// Corrects with all rows of `jacobian` at once and returns the step $`K ν`$ of the mean. [Andrade-Cetto 2005, Eqs. 6–9]
     ///
     /// $`P' = P - W W^T`$ with $`W = P H^T L^{-T}`$ and $`L L^T = S`$, on the lower triangle: for the optimal gain the same matrix as Joseph's
     /// $`(I-KH) P (I-KH)^T + K R K^T`$. Joseph's form multiplies the rounding errors of `S` by the gain, twice, and where rows of `S` almost

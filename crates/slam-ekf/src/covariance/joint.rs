@@ -67,7 +67,7 @@ impl JointCovariance {
         OMatrix::from_fn(|row, column| self.storage[(row, column)])
     }
 
-    /// $`P_{rr} ← F P_{rr} F^T + Q,\; P_{rm} ← F P_{rm}`$, in O(n).
+    /// $`P_{rr} ← F P_{rr} F^T + Q,\; P_{rm} ← F P_{rm}`$, in O(n). [Andrade-Cetto 2005, Eq. 5]
     pub(crate) fn move_robot<R: DimName>(&mut self, jacobian: &OMatrix<f64, R, R>, noise: &OMatrix<f64, R, R>)
     where
         DefaultAllocator: Allocator<R, R> + Allocator<R>,

@@ -2,7 +2,7 @@
 ///
 /// No measurement of landmarks from the robot changes when robot and map move together. A filter that linearizes at its newest estimate
 /// combines Jacobians at different points, whose null spaces differ: it gains spurious information about the common heading and becomes
-/// overconfident on long loops. [Andrade-Cetto 2003, section 2.2; Huang et al. 2010]
+/// overconfident on long loops. [Andrade-Cetto 2005, Sec. 2.2; Huang et al. 2010]
 ///
 /// The last two need a model with symmetries ([`LandmarkModel::symmetries`](crate::LandmarkModel::symmetries)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

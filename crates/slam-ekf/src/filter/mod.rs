@@ -1,5 +1,6 @@
 //! The filter, one step of the algorithm per file.
 
+mod expected_landmarks;
 mod gates;
 mod linearization;
 mod map;
@@ -14,7 +15,9 @@ mod step;
 mod update;
 mod update_robot;
 
+pub use expected_landmarks::ExpectedLandmarks;
 pub use linearization::LinearizationPoint;
+pub use map_management::anchors::{AnchorError, AnchorParams};
 pub use map_management::confirmation::LandmarkConfirmationParams;
 pub use map_management::merge::LandmarkMergingParams;
 pub use params::{CovarianceUpdate, OutlierRule, SlamParams, UpdateOrder};

@@ -24,7 +24,10 @@ pub struct SlamParams {
     pub covariance_update: CovarianceUpdate,
     /// Linearization points, which decide whether the filter stays consistent on long loops.
     pub linearization_point: LinearizationPoint,
-    /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
+    /// Number of the first landmarks that become anchors when they are confirmed, see [`EkfSlam::fix`](crate::EkfSlam::fix); anchors that are
+    /// given count. The paper: 1.
+    pub anchor_first: usize,
+    /// A landmark with more revisions leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
     /// paper: 50.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub retire_after: Option<usize>,
@@ -69,9 +72,9 @@ pub enum UpdateOrder {
 /// let robot = |covariance_update| {
 ///     let params = SlamParams { covariance_update, ..SlamParams::default() };
 ///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIds)?;
+///     slam.update(&look, &mut KnownIdAssociation)?;
 ///     slam.predict(&OdometryMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIds)?;
+///     slam.update(&look, &mut KnownIdAssociation)?;
 ///     Ok::<_, SlamError>(slam.robot().x())
 /// };
 /// assert!((robot(CovarianceUpdate::Full)? - robot(CovarianceUpdate::Compressed)?).abs() < 1e-12);
@@ -108,6 +111,7 @@ impl Default for SlamParams {
             update_order: UpdateOrder::Joint,
             covariance_update: CovarianceUpdate::default(),
             linearization_point: LinearizationPoint::default(),
+            anchor_first: 0,
             retire_after: None,
             confirmation: LandmarkConfirmationParams::default(),
             merging: None,
@@ -122,10 +126,14 @@ impl SlamParams {
             let range = "positive";
             return Err(SlamError::Parameter { name: "student_t_degrees_of_freedom", value: degrees, range });
         }
-        let restart_nis = self.confirmation.restart_nis;
-        if restart_nis.is_nan() || restart_nis <= 0.0 {
+        let tentative_restart_nis = self.confirmation.tentative_restart_nis;
+        if tentative_restart_nis.is_nan() || tentative_restart_nis <= 0.0 {
             let range = "positive";
-            return Err(SlamError::Parameter { name: "restart_nis", value: restart_nis, range });
+            return Err(SlamError::Parameter {
+                name: "tentative_restart_nis",
+                value: tentative_restart_nis,
+                range,
+            });
         }
         let share = self.confirmation.min_detection_rate;
         if !(0.0..=1.0).contains(&share) {

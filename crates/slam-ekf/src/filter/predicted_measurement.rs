@@ -14,9 +14,9 @@ where
 {
     /// The landmark.
     pub landmark: LandmarkId,
-    /// $`h(x_r, m)`$.
+    /// $`h(x_r, m)`$. [Andrade-Cetto 2005, Eq. 4]
     pub expected: M::Measurement,
-    /// $`H P H^T`$: covariance of the prediction, without the noise of the sensor.
+    /// $`H P H^T`$: covariance of the prediction, without the noise of the sensor. [Andrade-Cetto 2005, Eq. 8]
     pub covariance: TangentMatrix<M::Measurement>,
     pub(super) robot_jacobian: Jacobian<M::Measurement, M::Robot>,
     /// Start of the landmark's block and the derivative by it; `None` for anchors.

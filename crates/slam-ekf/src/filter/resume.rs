@@ -51,7 +51,7 @@ where
     /// let (sensor, params) = (RangeBearingSensor::default(), SlamParams::default());
     /// let mut slam = EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0))?;
     /// let seen = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
-    /// slam.update(&seen, &mut KnownIds)?;
+    /// slam.update(&seen, &mut KnownIdAssociation)?;
     ///
     /// let mut resumed = EkfSlam::resume(sensor, params, slam.snapshot())?;
     /// slam.predict(&OdometryMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;

@@ -11,7 +11,7 @@ use crate::{
     covariance::MapCovariance,
 };
 
-/// EKF-SLAM over one kind of landmark.
+/// EKF-SLAM over one kind of landmark. [Andrade-Cetto 2005, Fig. 2]
 ///
 /// The covariance of the robot is in the body frame, `(x, y, θ)`; that of landmarks in their own tangent space.
 ///
@@ -22,7 +22,7 @@ use crate::{
 /// let mut slam = EkfSlam::new(RangeBearingSensor::default(), SlamParams::default(), Pose2::new(0.0, 0.0, 0.0))?;
 /// let seen = |range, bearing| [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(range, bearing) }];
 ///
-/// let mut ids = KnownIds;
+/// let mut ids = KnownIdAssociation;
 ///
 /// slam.update(&seen(2.0, 0.0), &mut ids)?;                                          // a landmark two metres ahead
 /// slam.predict(&OdometryMotion::default(), &Pose2::new(1.1, 0.0, 0.0))?;           // odometry: 1.1 m forward

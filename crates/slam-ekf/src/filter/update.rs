@@ -61,6 +61,7 @@ where
         }
         let merges = self.merge_duplicates();
         self.remove_undetected();
+        self.anchor_first();
         self.retire_revised();
         self.covariance.end_update();
         Ok(UpdateReport { outcomes, merges })
@@ -145,7 +146,7 @@ where
     }
 
     /// All accepted observations at once: one joint linear correction of covariance and means. Returns `None` and changes nothing if their
-    /// innovation covariance is not positive definite.
+    /// innovation covariance is not positive definite. [Andrade-Cetto 2005, Eqs. 6–9]
     fn correct(&mut self, accepted: &[Accepted<M>]) -> Option<()> {
         if accepted.is_empty() {
             return Some(());

@@ -1,5 +1,5 @@
-use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix4, OMatrix, Vector4};
-use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, TangentMatrix};
+use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix1, Matrix4, OMatrix, Vector1, Vector4};
+use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, SensorModel, TangentMatrix};
 
 use super::OdometryMotion;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
@@ -10,14 +10,14 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, S
 /// `(x, y, θ, κ)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct DriftingPose {
+pub struct PoseWithHeadingDrift {
     /// Pose of the robot.
     pub pose: Pose2<f64>,
     /// κ: rotation of the robot per m beyond that of odometry, rad/m.
     pub heading_drift: f64,
 }
 
-impl Manifold for DriftingPose {
+impl Manifold for PoseWithHeadingDrift {
     type Scalar = f64;
     type Dim = Const<4>;
     fn dim(&self) -> Const<4> {
@@ -36,30 +36,30 @@ impl Manifold for DriftingPose {
 
 /// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct DriftingMotion(pub OdometryMotion);
+pub struct MotionWithHeadingDrift(pub OdometryMotion);
 
-impl DriftingMotion {
-    fn increment(state: &DriftingPose, increment: &Pose2<f64>) -> Pose2<f64> {
+impl MotionWithHeadingDrift {
+    fn increment(state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Pose2<f64> {
         let turn = increment.heading() + state.heading_drift * increment.translation.norm();
         Pose2::new(increment.x(), increment.y(), turn)
     }
 }
 
-impl MotionModel for DriftingMotion {
-    type State = DriftingPose;
+impl MotionModel for MotionWithHeadingDrift {
+    type State = PoseWithHeadingDrift;
     type Control = Pose2<f64>;
 
-    fn propagate(&self, state: &DriftingPose, increment: &Pose2<f64>) -> DriftingPose {
+    fn propagate(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> PoseWithHeadingDrift {
         let moved = Self::increment(state, increment);
-        DriftingPose { pose: self.0.propagate(&state.pose, &moved), ..*state }
+        PoseWithHeadingDrift { pose: self.0.propagate(&state.pose, &moved), ..*state }
     }
-    fn jacobian(&self, state: &DriftingPose, increment: &Pose2<f64>) -> Matrix4<f64> {
+    fn jacobian(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Matrix4<f64> {
         let moved = Self::increment(state, increment);
         let mut jacobian = self.0.jacobian(&state.pose, &moved).to_homogeneous();
         jacobian.m34 = increment.translation.norm();
         jacobian
     }
-    fn noise(&self, state: &DriftingPose, increment: &Pose2<f64>) -> Matrix4<f64> {
+    fn noise(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Matrix4<f64> {
         let mut noise = Matrix4::zeros();
         let of_pose = self.0.noise(&state.pose, &Self::increment(state, increment));
         noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&of_pose);
@@ -69,31 +69,31 @@ impl MotionModel for DriftingMotion {
 
 /// Any sensor of a pose on a robot whose odometry drifts: its measurements do not depend on the drift.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct DriftingPoseSensor<S>(pub S);
+pub struct SensorWithHeadingDrift<S>(pub S);
 
-impl<S> LandmarkModel for DriftingPoseSensor<S>
+impl<S> LandmarkModel for SensorWithHeadingDrift<S>
 where
     S: LandmarkModel<Robot = Pose2<f64>>,
     DefaultAllocator: SlamAlloc<RobotDim<S>, LandmarkDim<S>, MeasurementDim<S>>
         + SlamAlloc<Const<4>, LandmarkDim<S>, MeasurementDim<S>>,
 {
-    type Robot = DriftingPose;
+    type Robot = PoseWithHeadingDrift;
     type Landmark = S::Landmark;
     type Measurement = S::Measurement;
 
-    fn expected(&self, robot: &DriftingPose, landmark: &S::Landmark) -> S::Measurement {
+    fn expected(&self, robot: &PoseWithHeadingDrift, landmark: &S::Landmark) -> S::Measurement {
         self.0.expected(&robot.pose, landmark)
     }
     fn robot_jacobian(
         &self,
-        robot: &DriftingPose,
+        robot: &PoseWithHeadingDrift,
         landmark: &S::Landmark,
-    ) -> Jacobian<S::Measurement, DriftingPose> {
+    ) -> Jacobian<S::Measurement, PoseWithHeadingDrift> {
         widened(&self.0.robot_jacobian(&robot.pose, landmark))
     }
     fn landmark_jacobian(
         &self,
-        robot: &DriftingPose,
+        robot: &PoseWithHeadingDrift,
         landmark: &S::Landmark,
     ) -> OMatrix<f64, MeasurementDim<S>, LandmarkDim<S>> {
         self.0.landmark_jacobian(&robot.pose, landmark)
@@ -118,7 +118,7 @@ where
     }
     fn extended(
         &self,
-        robot: &DriftingPose,
+        robot: &PoseWithHeadingDrift,
         landmark: &S::Landmark,
         measurement: &S::Measurement,
     ) -> S::Landmark {
@@ -130,7 +130,7 @@ where
     fn symmetries(&self) -> &'static [&'static str] {
         self.0.symmetries()
     }
-    fn robot_symmetry(&self, robot: &DriftingPose) -> DMatrix<f64> {
+    fn robot_symmetry(&self, robot: &PoseWithHeadingDrift) -> DMatrix<f64> {
         self.0.robot_symmetry(&robot.pose).insert_row(3, 0.0)
     }
     fn landmark_symmetry(&self, landmark: &S::Landmark) -> DMatrix<f64> {
@@ -138,15 +138,31 @@ where
     }
     fn initialize(
         &self,
-        robot: &DriftingPose,
+        robot: &PoseWithHeadingDrift,
         measurement: &S::Measurement,
-    ) -> NewLandmark<S::Landmark, DriftingPose> {
+    ) -> NewLandmark<S::Landmark, PoseWithHeadingDrift> {
         let new = self.0.initialize(&robot.pose, measurement);
         NewLandmark {
             landmark: new.landmark,
             robot_jacobian: widened(&new.robot_jacobian),
             covariance: new.covariance,
         }
+    }
+}
+
+/// Measures the heading drift of odometry, with its variance, rad²/m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadingDriftSensor(pub f64);
+
+impl SensorModel for HeadingDriftSensor {
+    type State = PoseWithHeadingDrift;
+    type Measurement = Vector1<f64>;
+
+    fn expected(&self, robot: &PoseWithHeadingDrift) -> Vector1<f64> {
+        Vector1::new(robot.heading_drift)
+    }
+    fn noise(&self, _: &PoseWithHeadingDrift) -> Matrix1<f64> {
+        Matrix1::new(self.0)
     }
 }
 

@@ -3,27 +3,40 @@
 mod ackermann;
 mod correlated_noise;
 mod drifting;
+mod external;
 mod increment;
 mod monobot;
+mod motion_statistics;
 mod mounted;
 mod planar;
 mod range_bearing;
 mod relative_position;
 mod scaled;
+mod sequential_motion;
+mod unknown_motion;
 mod velocity;
 #[cfg(feature = "lines")]
 mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use correlated_noise::CorrelatedNoise;
-pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor};
+pub use drifting::{
+    HeadingDriftSensor, MotionWithHeadingDrift, PoseWithHeadingDrift, SensorWithHeadingDrift,
+};
+pub use external::{
+    ExternalError, ExternalParams, HeadingSensor, LocalPlane, MapMeasurement, MovedSensor, PlanarRobot,
+    PoseSensor, PositionSensor,
+};
 pub use increment::OdometryMotion;
-pub use monobot::{MonobotMotion, MonobotSensor};
+pub use monobot::{LineDistanceSensor, MonobotMotion};
+pub use motion_statistics::MotionStatistics;
 pub use mounted::MountedSensor;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{MotionWithRangeScale, PoseWithRangeScale, RangeBearingSensorWithScale};
+pub use sequential_motion::SequentialMotion;
+pub use unknown_motion::UnknownMotion;
 pub use velocity::{VelocityControl, VelocityMotion};
 #[cfg(feature = "lines")]
 pub use wall::{Wall, WallLine, WallMeasurement, WallSensor};

@@ -17,16 +17,16 @@ pub struct MonobotMotion {
 ///
 /// ```
 /// use nalgebra::Vector1;
-/// use wayfix_slam_ekf::{EkfSlam, KnownIds, LandmarkId, MonobotSensor, Observation, SlamParams};
-/// let sensor = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.0 };
+/// use wayfix_slam_ekf::{EkfSlam, KnownIdAssociation, LandmarkId, LineDistanceSensor, Observation, SlamParams};
+/// let sensor = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.0 };
 /// let mut slam = EkfSlam::new(sensor, SlamParams::default(), Vector1::new(-1.0))?;
-/// slam.update(&[Observation { label: Some(LandmarkId(0)), measurement: Vector1::new(2.1) }], &mut KnownIds)?;
+/// slam.update(&[Observation { label: Some(LandmarkId(0)), measurement: Vector1::new(2.1) }], &mut KnownIdAssociation)?;
 /// assert!((slam.landmark(LandmarkId(0)).expect("seen").mean.x - 1.1).abs() < 1e-12);
 /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct MonobotSensor {
+pub struct LineDistanceSensor {
     /// $`σ_0`$, m; above zero, or a landmark at the robot would be measured without error.
     pub sigma: f64,
     /// $`β`$: standard deviation as a share of the distance.
@@ -48,7 +48,7 @@ impl MotionModel for MonobotMotion {
     }
 }
 
-impl LandmarkModel for MonobotSensor {
+impl LandmarkModel for LineDistanceSensor {
     type Robot = Vector1<f64>;
     type Landmark = Vector1<f64>;
     type Measurement = Vector1<f64>;

@@ -7,7 +7,7 @@ use crate::{LandmarkModel, NewLandmark};
 /// Position of a point in the robot frame, metres: x forward, y left.
 pub type RelativePosition = Vector2<f64>;
 
-/// Point landmarks measured as a position in the robot frame: $`z = R^T (m - t)`$.
+/// Point landmarks measured as a position in the robot frame: $`z = R^T (m - t)`$. [Andrade-Cetto 2005, Eqs. 24–25]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct RelativePositionSensor {

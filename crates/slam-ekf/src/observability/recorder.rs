@@ -13,7 +13,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 ///
 /// $`J = \sum_k O_k^T S_k^{-1} O_k`$ with $`O_k = \begin{pmatrix} H_{r,k} Φ_k & H_{m,k} \end{pmatrix}`$ and
 /// $`Φ_k = F_{k-1} ⋯ F_0`$: the rows of the local observability matrix, weighed as the total Fisher information of
-/// [Andrade-Cetto 2005, Eqs. 14-17]. Its rank is that of the observability matrix.
+/// [Andrade-Cetto 2005, Eqs. 13–14]. Its rank is that of the observability matrix.
 ///
 /// An EKF linearizes each scan at a different point; in the plane this alone gives `J` spurious information about the heading of the map.
 /// [`unobservable_directions`](Self::unobservable_directions) avoids this: it tests every scan, at its own linearization, for the motion of the world.
@@ -21,18 +21,18 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 /// ```
 /// use nalgebra::Vector1;
 /// use wayfix_slam_ekf::{*, observability::ObservabilityRecorder};
-/// let sensor = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.0 };
+/// let sensor = LineDistanceSensor { sigma: 0.1, sigma_per_meter: 0.0 };
 /// let mut slam = EkfSlam::new(sensor, SlamParams::default(), Vector1::new(-1.0))?;
 /// let mut recorder = ObservabilityRecorder::new(&slam);
 /// let seen = |id, distance| Observation { label: Some(LandmarkId(id)), measurement: Vector1::new(distance) };
 ///
-/// slam.update(&[seen(0, 2.0)], &mut KnownIds)?;
+/// slam.update(&[seen(0, 2.0)], &mut KnownIdAssociation)?;
 /// recorder.record(&slam, &[LandmarkId(0)]);
 /// assert_eq!((recorder.dimension(), recorder.rank()), (2, 1));
 /// assert_eq!(recorder.unobservable_directions()[0].to_string(), "translation of everything");
 ///
 /// slam.add_anchor(LandmarkId(1), Vector1::new(0.0))?; // a landmark whose place is known
-/// slam.update(&[seen(1, 1.0)], &mut KnownIds)?;
+/// slam.update(&[seen(1, 1.0)], &mut KnownIdAssociation)?;
 /// recorder.record(&slam, &[LandmarkId(1)]);
 /// assert_eq!(recorder.rank(), 2);
 /// assert!(recorder.unobservable_directions().is_empty());
@@ -120,7 +120,8 @@ impl ObservabilityRecorder {
     pub fn dimension(&self) -> usize {
         self.information.nrows()
     }
-    /// Number of coordinates or combinations that the measurements determine: the rank of the local observability matrix. Cost O(n³).
+    /// Number of coordinates or combinations that the measurements determine: the rank of the local observability matrix. Below full rank the bound
+    /// of [Andrade-Cetto 2005, Eq. 16] does not exist. Cost O(n³).
     pub fn rank(&self) -> usize {
         self.dimension() - self.null_space().ncols()
     }

@@ -1,23 +1,26 @@
-use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::CmlSystem;
-use crate::system::{self, EstimateRecorder, EstimateWriter, write_pose};
+use crate::system::{self, EstimateRecorder, EstimateWriter, PathPieces, write_pose};
 
 /// Writes the views, the path and the references of an appearance map beside the records, for viewers.
-pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawing>;
+pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawingState>;
 
 /// State of the drawing of [`CmlEstimateRecorder`].
 #[derive(Default)]
-pub struct CmlDrawing {
+pub struct CmlDrawingState {
     n_written: usize,
-    path: Vec<Pose2<f64>>,
+    path: PathPieces,
+    /// Number of views at which the references are written next.
+    next_map: usize,
 }
 
-/// Number of views between two writes of the whole path and the references.
+/// Least number of views between two writes of the references.
 const PERIOD: usize = 20;
+/// In a long log the period is this part of the views so far, so that the references do not outgrow the log.
+const PERIOD_SHARE: usize = 100;
 
-impl system::EstimateDrawing for CmlDrawing {
+impl system::EstimateDrawer for CmlDrawingState {
     type System = CmlSystem;
 
     fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
@@ -25,11 +28,11 @@ impl system::EstimateDrawing for CmlDrawing {
         self.n_written += 1;
         let (stamp, world) = (frame.stamp, topics::WORLD_FRAME);
         if let Some(pose) = frame.pose.as_ref().map(|pose| *pose.mean()) {
-            self.path.push(pose);
+            self.path.push(stamp, &pose, writer)?;
             write_pose(writer, stamp, &pose)?;
         }
-        if self.n_written % PERIOD == 1 {
-            writer.poses_in_frame("/estimate/path", stamp, world, &self.path)?;
+        if self.n_written >= self.next_map {
+            self.next_map = self.n_written + PERIOD.max(self.n_written / PERIOD_SHARE);
             let references = system.localizer().map().references().values();
             let places = references.flat_map(|reference| &reference.places);
             let points: Vec<[f64; 2]> =

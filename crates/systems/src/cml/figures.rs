@@ -1,7 +1,7 @@
 use super::{CmlRun, CmlTask, CmlViewResult};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::TrajectorySample,
+    errors::PoseWithTruth,
     report::{Metric, ReportRun},
 };
 
@@ -53,16 +53,16 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
         samples.iter().filter_map(|(frame, sample)| {
             Some((frame.odometry?.translation - sample.truth.translation).norm())
         }),
-        "odometry_error_mean_m",
+        "dead_reckoning_error_mean_m",
     ));
     if run.task != CmlTask::ConcurrentMapBuilding {
-        metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_view_error_mean_m"));
+        metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_reference_error_mean_m"));
     }
     metrics
 }
 
 /// Distance from the true position to the reference nearest in appearance, m: no filter, no odometry.
-fn nearest_error((frame, sample): &(&CmlViewResult, TrajectorySample)) -> Option<f64> {
+fn nearest_error((frame, sample): &(&CmlViewResult, PoseWithTruth)) -> Option<f64> {
     let (_, [x, y]) = frame.nearest?;
     Some((x - sample.truth.x()).hypot(y - sample.truth.y()))
 }

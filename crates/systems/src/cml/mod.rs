@@ -1,12 +1,10 @@
 //! Appearance maps with [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer): learn places, recognize them and forget them.
 //!
-//! A [`CmlRunPlan`] of a log or of a [`FrameRecording`](recording::FrameRecording) selects the views to learn and to localize, [`run`] executes it with a
+//! A [`CmlRunPlan`] of a log or of a [`PosedFrameFolder`](recording::PosedFrameFolder) selects the views to learn and to localize, [`run`] executes it with a
 //! [`CmlSystem`], [`summarize`] gives the figures and [`plots`] the pictures.
 
 mod estimates;
 mod figures;
-mod histogram;
-pub use histogram::histogram;
 mod odometry;
 mod params;
 mod plan;
@@ -17,13 +15,15 @@ mod run;
 mod saved;
 mod system;
 
-pub use estimates::{CmlDrawing, CmlEstimateRecorder};
+pub use wayfix_evaluation::plot::histogram;
+
+pub use estimates::{CmlDrawingState, CmlEstimateRecorder};
 pub use figures::{summarize, task};
 pub use odometry::synthetic_odometry;
 pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};
-pub use plan::{CameraReadingMode, CmlRunPlan};
+pub use plan::{CameraViewGeometry, CmlRunPlan};
 pub use plots::plots;
-pub use reader::ViewReader;
+pub use reader::ViewDescriptorReader;
 pub use run::{CmlRun, CmlStartPose, CmlTask, first_true_pose, run};
 pub use saved::{PeriodicMapSaver, SavedViewMapError, end_note, read_map};
 pub use system::{CmlSystem, CmlViewResult, PanoramaLocalizer, PanoramaMap};

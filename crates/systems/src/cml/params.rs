@@ -1,6 +1,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
+use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaDescriptorParams};
 
 use crate::system::VELOCITY_TIMEOUT;
 
@@ -19,7 +19,7 @@ pub struct CmlParams {
     /// Synthetic odometry for a folder of frames, which has none.
     pub synthetic_odometry: SyntheticOdometry,
     /// Parameters of the panorama descriptors.
-    pub panorama_descriptor: PanoramaParams,
+    pub panorama_descriptor: PanoramaDescriptorParams,
     /// The localizer.
     pub localizer: LocalizerParams,
 }
@@ -32,7 +32,7 @@ impl Default for CmlParams {
             taught_pose_uncertainty: PoseSigmas::default(),
             start_uncertainty: PoseSigmas::default(),
             synthetic_odometry: SyntheticOdometry::default(),
-            panorama_descriptor: PanoramaParams::default(),
+            panorama_descriptor: PanoramaDescriptorParams::default(),
             localizer: LocalizerParams::default(),
         }
     }

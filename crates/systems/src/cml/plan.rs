@@ -1,11 +1,11 @@
 use anyhow::{Result, ensure};
-use wayfix_appearance_cml::{AzimuthDirection, Learning, OmnidirectionalRing, PanoramaParams};
+use wayfix_appearance_cml::{AzimuthDirection, MapLearning, OmnidirectionalRing, PanoramaDescriptorParams};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{
-    CmlParams, ViewReader,
-    recording::{AzimuthDirectionEvidence, FrameRecording, HeadingSource, PosedFrame, path, turn_evidence},
+    CmlParams, ViewDescriptorReader,
+    recording::{AzimuthDirectionEvidence, HeadingSource, PosedFrame, PosedFrameFolder, path, turn_evidence},
     synthetic_odometry,
 };
 use crate::system::{HeldVelocity, IncrementPlausibilityCheck, check_velocity};
@@ -26,7 +26,7 @@ pub struct CmlRunPlan {
 
 /// How to read the camera.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct CameraReadingMode {
+pub struct CameraViewGeometry {
     /// The ring of a raw omnidirectional image.
     pub donut: Option<OmnidirectionalRing>,
     /// Turning sense of the panorama columns; determined from the turns if not given.
@@ -46,11 +46,11 @@ impl CmlRunPlan {
     /// # Errors
     /// Returns an error if no frame can be read.
     pub fn of_recording(
-        recording: &FrameRecording,
-        learn_from: Option<&FrameRecording>,
+        recording: &PosedFrameFolder,
+        learn_from: Option<&PosedFrameFolder>,
         withhold: usize,
         params: &mut CmlParams,
-        camera: &CameraReadingMode,
+        camera: &CameraViewGeometry,
         seed: u64,
     ) -> Result<Self> {
         let mut notes = Vec::new();
@@ -77,7 +77,7 @@ impl CmlRunPlan {
             params.taught_pose_uncertainty.heading_sigma = ANY_HEADING;
             // A map that grows during the run has no training views.
             if learn_from.is_some() || withhold > 0 {
-                params.localizer.learning = Learning::Static;
+                params.localizer.map_learning = MapLearning::Static;
             }
         }
         notes.push(describe_heading(heading).to_owned());
@@ -102,7 +102,7 @@ impl CmlRunPlan {
     }
 
     /// Columns and rows of the panorama of the first usable view.
-    pub fn first_size(&self, reader: &mut ViewReader) -> Option<(usize, usize)> {
+    pub fn first_size(&self, reader: &mut ViewDescriptorReader) -> Option<(usize, usize)> {
         let images = self.records.iter().filter_map(|record| match &record.data {
             RecordData::Image(image) => Some(image),
             _ => None,
@@ -122,7 +122,7 @@ impl CmlRunPlan {
         records: Vec<Record>,
         withhold: usize,
         params: &mut CmlParams,
-        camera: &CameraReadingMode,
+        camera: &CameraViewGeometry,
     ) -> Result<Self> {
         let turns = image_headings(&records, params.velocity_timeout);
         let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
@@ -208,11 +208,13 @@ fn image_headings(records: &[Record], velocity_timeout: f64) -> Vec<(&EncodedIma
 fn evidence<'a>(
     images: impl Iterator<Item = (&'a EncodedImage, f64)>,
     params: &CmlParams,
-    camera: &CameraReadingMode,
+    camera: &CameraViewGeometry,
 ) -> Option<AzimuthDirectionEvidence> {
-    let views =
-        PanoramaParams { azimuth_direction: AzimuthDirection::Clockwise, ..params.panorama_descriptor };
-    let mut reader = ViewReader::new(views, camera.donut);
+    let views = PanoramaDescriptorParams {
+        azimuth_direction: AzimuthDirection::Clockwise,
+        ..params.panorama_descriptor
+    };
+    let mut reader = ViewDescriptorReader::new(views, camera.donut);
     let (views, headings): (Vec<_>, Vec<f64>) = images
         .take(N_EVIDENCE)
         .filter_map(|(image, heading)| Some((reader.describe(image).ok()?, heading)))
@@ -224,7 +226,7 @@ fn choose_sense(
     evidence: Option<AzimuthDirectionEvidence>,
     heading: HeadingSource,
     params: &mut CmlParams,
-    camera: &CameraReadingMode,
+    camera: &CameraViewGeometry,
 ) -> String {
     let told = match (camera.sense, evidence) {
         (Some(sense), _) => {

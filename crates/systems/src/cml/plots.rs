@@ -1,4 +1,4 @@
-use super::{CmlRun, CmlViewResult, histogram::histogram};
+use super::{CmlRun, CmlViewResult, histogram};
 use wayfix_evaluation::plot::{LinePlot, MapPlot, PlotError, PlotSeries, SvgPlot};
 
 /// Plots the path with the references, error histogram and error over time, distance to the best reference, and number of references.

@@ -1,35 +1,35 @@
 use anyhow::{Result, anyhow};
 use wayfix_appearance_cml::{
-    OmnidirectionalRing, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams,
+    OmnidirectionalRing, Panorama, PanoramaDescriptor, PanoramaDescriptorExtractor, PanoramaDescriptorParams,
 };
 use wayfix_sensor_log::EncodedImage;
 
 /// Computes descriptors of camera images: panoramas, or raw images whose ring is unwrapped first.
 #[derive(Clone, Debug)]
-pub struct ViewReader {
-    params: PanoramaParams,
+pub struct ViewDescriptorReader {
+    params: PanoramaDescriptorParams,
     donut: Option<OmnidirectionalRing>,
     /// Created for the size of the first image.
-    features: Option<PanoramaFeatures>,
+    features: Option<PanoramaDescriptorExtractor>,
 }
 
 /// Panorama columns per sector, and the maximum number of rows per ring, of an unwrapped ring.
 const OVERSAMPLING: usize = 3;
 
-impl ViewReader {
+impl ViewDescriptorReader {
     /// A reader of panoramas, or of raw images with a ring.
-    pub fn new(params: PanoramaParams, donut: Option<OmnidirectionalRing>) -> Self {
+    pub fn new(params: PanoramaDescriptorParams, donut: Option<OmnidirectionalRing>) -> Self {
         Self { params, donut, features: None }
     }
 
     /// Parameters of the descriptors.
-    pub fn params(&self) -> &PanoramaParams {
+    pub fn params(&self) -> &PanoramaDescriptorParams {
         &self.params
     }
 
     /// Columns and rows of a panorama; `None` before the first.
     pub fn size(&self) -> Option<(usize, usize)> {
-        self.features.as_ref().map(PanoramaFeatures::size)
+        self.features.as_ref().map(PanoramaDescriptorExtractor::size)
     }
 
     /// The panorama of an image.
@@ -57,7 +57,7 @@ impl ViewReader {
         let features = match &self.features {
             Some(features) => features,
             None => {
-                let features = PanoramaFeatures::new(self.params, size.0, size.1)
+                let features = PanoramaDescriptorExtractor::new(self.params, size.0, size.1)
                     .map_err(|error| anyhow!("panoramas of {} × {} pixels: {error}", size.0, size.1))?;
                 // The first view with content fixes the size.
                 features.describe(&panorama)?;

@@ -3,14 +3,14 @@ use nalgebra::Vector3;
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
-use wayfix_appearance_cml::Start;
+use wayfix_appearance_cml::StartPosePrior;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData};
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
 
 use crate::system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay};
-use wayfix_evaluation::errors::{ReferencePath, TrajectorySample};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub enum CmlStartPose {
     /// Anywhere in the map.
     Anywhere,
     /// The pose of the saved state.
-    Saved(Start),
+    Saved(StartPosePrior),
 }
 
 /// Localized views and the truth.
@@ -103,11 +103,11 @@ pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
 /// Uncertainty of a start pose that defines the frame of a map.
 const EXACT: PoseSigmas = PoseSigmas { position_sigma: 1e-3, heading_sigma: 1e-3 };
 
-fn begin(start: CmlStartPose, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
+fn begin(start: CmlStartPose, sigmas: &PoseSigmas, seed: u64) -> Result<StartPosePrior> {
     Ok(match start {
-        CmlStartPose::Anywhere => Start::Anywhere,
+        CmlStartPose::Anywhere => StartPosePrior::Anywhere,
         CmlStartPose::Saved(start) => start,
-        CmlStartPose::Exactly(pose) => Start::Known(gaussian(&pose, &EXACT)?),
+        CmlStartPose::Exactly(pose) => StartPosePrior::Known(gaussian(&pose, &EXACT)?),
         CmlStartPose::Near(pose) => {
             // Draws the start error from the stated uncertainty.
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -117,17 +117,17 @@ fn begin(start: CmlStartPose, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
                 normal(sigmas.position_sigma),
                 normal(sigmas.heading_sigma),
             );
-            Start::Known(gaussian(&pose.retract(&error), sigmas)?)
+            StartPosePrior::Known(gaussian(&pose.retract(&error), sigmas)?)
         }
     })
 }
 
 impl CmlRun {
     /// Localized views with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&CmlViewResult, TrajectorySample)> {
+    pub fn samples(&self) -> Vec<(&CmlViewResult, PoseWithTruth)> {
         let sample = |frame: &CmlViewResult| {
             let (pose, truth) = (frame.pose.as_ref()?, self.truth.at(frame.stamp)?);
-            Some(TrajectorySample { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
+            Some(PoseWithTruth { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
         };
         let frames = self.system.frames().iter();
         frames.filter_map(|frame| Some((frame, sample(frame)?))).collect()

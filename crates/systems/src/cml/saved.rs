@@ -5,7 +5,7 @@ use std::{
 };
 
 use wayfix_appearance_cml::{
-    ArchivedViewFormat, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal,
+    ArchivedDescriptorFormat, MapArchive, MapArchiveAppender, MapArchiveCompleteness, MapArchiveError,
 };
 use wayfix_sensor_log::{Record, Stamp};
 
@@ -50,8 +50,8 @@ pub fn read_map(path: &Path) -> Result<MapArchive, SavedViewMapError> {
 /// A message if the end of the map is missing.
 pub fn end_note(archive: &MapArchive) -> Option<String> {
     match archive.end() {
-        MapArchiveEnd::Whole => None,
-        MapArchiveEnd::Interrupted { whole_bytes } => Some(format!(
+        MapArchiveCompleteness::Whole => None,
+        MapArchiveCompleteness::Interrupted { whole_bytes } => Some(format!(
             "saving the map was interrupted: it is whole up to byte {whole_bytes}, the rest is left out"
         )),
     }
@@ -70,7 +70,7 @@ pub struct PeriodicMapSaver {
 }
 
 struct OpenJournal {
-    journal: MapArchiveJournal,
+    journal: MapArchiveAppender,
     file: File,
     n_snapshot: usize,
     n_appended: usize,
@@ -110,7 +110,7 @@ impl PeriodicMapSaver {
 
     fn snapshot(&mut self, system: &CmlSystem) -> Result<(), SavedViewMapError> {
         let reader = system.reader();
-        let params = ArchivedViewFormat {
+        let params = ArchivedDescriptorFormat {
             views: *reader.params(),
             size: reader.size().ok_or(SavedViewMapError::NoView)?,
         };
@@ -120,7 +120,7 @@ impl PeriodicMapSaver {
         let opened = write_atomically(&self.path, &bytes)
             .and_then(|()| OpenOptions::new().append(true).open(&self.path));
         let file = opened.map_err(|source| self.io(source))?;
-        let journal = MapArchiveJournal::after(map);
+        let journal = MapArchiveAppender::after(map);
         self.open = Some(OpenJournal { journal, file, n_snapshot: bytes.len(), n_appended: 0 });
         Ok(())
     }

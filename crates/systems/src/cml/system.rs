@@ -2,14 +2,14 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceLocalizer, AppearanceMap, Descriptor, Event, PanoramaDescriptor,
-    ReferenceSearch, Start,
+    AppearanceIndex, AppearanceLocalizer, AppearanceMap, LocalizerEvent, PanoramaDescriptor, ReferenceSearch,
+    StartPosePrior, ViewDescriptor,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
-use super::{CmlParams, PoseSigmas, ViewReader};
+use super::{CmlParams, PoseSigmas, ViewDescriptorReader};
 use crate::system::{
     EventCounts, HeldVelocity, IncrementPlausibilityCheck, Stopwatch, System, check_velocity, warn_of_lag,
 };
@@ -21,7 +21,7 @@ pub type PanoramaMap = AppearanceMap<PanoramaDescriptor, AppearanceIndex<Panoram
 
 /// The localizer, fed with the records of a log.
 pub struct CmlSystem {
-    reader: ViewReader,
+    reader: ViewDescriptorReader,
     localizer: PanoramaLocalizer,
     velocity: HeldVelocity,
     velocity_timeout: f64,
@@ -64,10 +64,10 @@ impl CmlSystem {
     ///
     /// # Errors
     /// Returns an error if a parameter is out of range.
-    pub fn new(params: &CmlParams, reader: ViewReader, map: PanoramaMap) -> anyhow::Result<Self> {
+    pub fn new(params: &CmlParams, reader: ViewDescriptorReader, map: PanoramaMap) -> anyhow::Result<Self> {
         Ok(Self {
             reader,
-            localizer: PanoramaLocalizer::with_map(params.localizer, map, Start::Anywhere)?,
+            localizer: PanoramaLocalizer::with_map(params.localizer, map, StartPosePrior::Anywhere)?,
             velocity: HeldVelocity::default(),
             velocity_timeout: params.velocity_timeout,
             plausible: IncrementPlausibilityCheck::default(),
@@ -92,7 +92,7 @@ impl CmlSystem {
     }
 
     /// The reader of the views; it holds the panorama size.
-    pub fn reader(&self) -> &ViewReader {
+    pub fn reader(&self) -> &ViewDescriptorReader {
         &self.reader
     }
 
@@ -125,9 +125,9 @@ impl CmlSystem {
     ///
     /// # Errors
     /// Returns an error if the start pose is invalid.
-    pub fn start(&mut self, start: Start) -> anyhow::Result<()> {
+    pub fn start(&mut self, start: StartPosePrior) -> anyhow::Result<()> {
         self.odometry = match &start {
-            Start::Known(pose) => Some(*pose.mean()),
+            StartPosePrior::Known(pose) => Some(*pose.mean()),
             _ => None,
         };
         Ok(self.localizer.restart(start)?)
@@ -165,11 +165,11 @@ impl CmlSystem {
         let step = describing + stopwatch.elapsed();
         for event in &outcome.events {
             self.events.count(match event {
-                Event::NewReference(_) => "new_reference",
-                Event::Forgotten(_) => "reference_forgotten",
-                Event::Lost => "pose_lost",
-                Event::Found => "pose_found",
-                Event::Relocated => "pose_relocated",
+                LocalizerEvent::NewReference(_) => "new_reference",
+                LocalizerEvent::Forgotten(_) => "reference_forgotten",
+                LocalizerEvent::Lost => "pose_lost",
+                LocalizerEvent::Found => "pose_found",
+                LocalizerEvent::Relocated => "pose_relocated",
                 _ => "other",
             });
         }

@@ -5,11 +5,11 @@ use super::ColorSystem;
 use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
-pub type ColorEstimateRecorder = EstimateRecorder<ColorEstimateDrawing>;
+pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawingState>;
 
 /// State of the drawing of [`ColorEstimateRecorder`].
 #[derive(Default)]
-pub struct ColorEstimateDrawing {
+pub struct ColorDrawingState {
     n_written: usize,
     path: Vec<Pose2<f64>>,
 }
@@ -17,7 +17,7 @@ pub struct ColorEstimateDrawing {
 /// Number of frames between two writes of the whole path.
 const PATH_PERIOD: usize = 20;
 
-impl system::EstimateDrawing for ColorEstimateDrawing {
+impl system::EstimateDrawer for ColorDrawingState {
     type System = ColorSystem;
 
     fn draw(

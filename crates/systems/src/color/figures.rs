@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 use super::{ClassificationCounts, ColorRun, rate_of};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::{MeanInterval, TrajectorySample, trajectory_errors},
+    errors::{MeanInterval, PoseWithTruth, trajectory_errors},
     report::{Metric, ReportRun},
 };
 
@@ -20,7 +20,7 @@ pub fn summarize(run: &mut ColorRun) -> ReportRun {
         frames.iter().map(value).sum::<f64>() / frames.len().max(1) as f64
     };
     metrics.push(Metric::new("ess_mean", mean(&|frame| frame.effective_particles), ""));
-    metrics.push(Metric::new("particles_mean", mean(&|frame| frame.n_particles as f64), ""));
+    metrics.push(Metric::new("n_particles_mean", mean(&|frame| frame.n_particles as f64), ""));
     metrics.push(Metric::new("n_frames", frames.len() as f64, ""));
     let longest = frames.iter().map(|frame| frame.step).max().unwrap_or_default();
     let timings = vec![
@@ -31,14 +31,14 @@ pub fn summarize(run: &mut ColorRun) -> ReportRun {
 }
 
 fn localization(run: &ColorRun) -> Vec<Metric> {
-    let samples: Vec<TrajectorySample> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
     let Some(errors) = trajectory_errors(&samples) else { return Vec::new() };
     let n = samples.len() as f64;
-    let positions: Vec<f64> = samples.iter().map(TrajectorySample::position_error).collect();
-    let heading = samples.iter().map(TrajectorySample::heading_error).sum::<f64>() / n;
+    let positions: Vec<f64> = samples.iter().map(PoseWithTruth::position_error).collect();
+    let heading = samples.iter().map(PoseWithTruth::heading_error).sum::<f64>() / n;
     let mut metrics = vec![
         Metric::new("position_mean_m", positions.iter().sum::<f64>() / n, "m"),
-        Metric::new("position_max_m", positions.iter().copied().fold(0.0, f64::max), "m"),
+        Metric::new("position_error_max_m", positions.iter().copied().fold(0.0, f64::max), "m"),
         Metric::new("heading_mean_deg", heading.to_degrees(), "°"),
         Metric::new("ate_rmse_m", errors.ate_rmse, "m"),
     ];
@@ -53,7 +53,7 @@ fn odometry(run: &ColorRun) -> Option<Metric> {
         run.samples().into_iter().map(|(frame, sample)| Some((frame.odometry?, sample.truth))).collect();
     let pairs = pairs.filter(|pairs| !pairs.is_empty())?;
     let sum: f64 = pairs.iter().map(|(pose, truth)| (pose.translation - truth.translation).norm()).sum();
-    Some(Metric::new("odometry_position_mean_m", sum / pairs.len() as f64, "m"))
+    Some(Metric::new("dead_reckoning_position_error_mean_m", sum / pairs.len() as f64, "m"))
 }
 
 fn classification(run: &ColorRun) -> Vec<Metric> {
@@ -62,11 +62,11 @@ fn classification(run: &ColorRun) -> Vec<Metric> {
     let overall: Vec<f64> = labelled.iter().filter_map(|counts| counts.rate()).collect();
     let Some(overall) = MeanInterval::of(&overall) else { return Vec::new() };
     let mut metrics = Metric::of_mean("classification_rate", &overall, "").to_vec();
-    metrics.push(Metric::new("n_labelled", overall.n as f64, ""));
+    metrics.push(Metric::new("n_labelled_images", overall.n as f64, ""));
     for (at, name) in run.system.map().colors().iter().enumerate() {
         let rates = rate_of(labelled.iter().copied(), ColorId(at as u8), MIN_PIXELS);
         if let Some(rate) = MeanInterval::of(&rates) {
-            metrics.extend(Metric::of_mean(&format!("rate_{name}"), &rate, ""));
+            metrics.extend(Metric::of_mean(&format!("classification_rate_{name}"), &rate, ""));
         }
     }
     metrics

@@ -24,7 +24,7 @@ impl ClassificationCounts {
     }
 }
 
-/// Classifies every labelled pixel; background pixels do not count, as in [Schulz & Fox 2004, V.A].
+/// Classifies every labelled pixel; background pixels do not count, as in [Schulz & Fox 2004, V.A, Table 1].
 ///
 /// Returns `None` if labels and image differ in size.
 pub fn tally(

@@ -13,7 +13,7 @@ pub mod priors;
 mod run;
 mod system;
 
-pub use estimates::{ColorEstimateDrawing, ColorEstimateRecorder};
+pub use estimates::{ColorDrawingState, ColorEstimateRecorder};
 pub use figures::summarize;
 pub use labels::{ClassificationCounts, rate_of, tally};
 pub use map::{field_lines, read_map};

@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_color_model::{
-    BackgroundColorModel, FeatureLikelihoodParams, ImageLikelihood, LightingDrift, LocalizerParams,
+    BackgroundColorModel, FeatureLikelihoodParams, ImageLikelihoodChoice, LightingDrift, LocalizerParams,
     UnseenColorRule, YuvStandard,
 };
 
@@ -36,15 +36,15 @@ pub struct ColorSystemParams {
 
 impl ColorSystemParams {
     /// The likelihood of the particles.
-    pub(crate) fn likelihood(&self) -> ImageLikelihood {
+    pub(crate) fn likelihood(&self) -> ImageLikelihoodChoice {
         self.feature_likelihood
-            .map_or(ImageLikelihood::Pixels(self.localizer.pixels), ImageLikelihood::Features)
+            .map_or(ImageLikelihoodChoice::Pixels(self.localizer.pixels), ImageLikelihoodChoice::Features)
     }
 
     /// Sets the localizer as published. Odometry and camera describe the robot, not the method.
     pub fn set_published(&mut self) {
-        let LocalizerParams { odometry, camera, .. } = self.localizer;
-        self.localizer = LocalizerParams { odometry, camera, ..LocalizerParams::as_published() };
+        let LocalizerParams { odometry, camera_pose_noise, .. } = self.localizer;
+        self.localizer = LocalizerParams { odometry, camera_pose_noise, ..LocalizerParams::as_published() };
     }
 }
 

@@ -2,8 +2,8 @@ use anyhow::Result;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{EncodedImage, Stamp};
 
-use super::{ColorRun, ColorSystem, field_lines};
-use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, SvgPlot};
+use super::{ColorRun, ColorSystem, field_lines, uv_ellipses};
+use wayfix_evaluation::plot::{CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, NamedEllipse, SvgPlot};
 
 /// Frames of the film; each represents a part of the run.
 const N_FRAMES: usize = 6;
@@ -19,7 +19,7 @@ const PARTICLES: [u8; 3] = [31, 119, 180];
 const ESTIMATE: [u8; 3] = [240, 160, 0];
 const TRUTH: [u8; 3] = [214, 39, 40];
 
-/// The particles on the field at some moments of a run, recorded during the run and drawn afterwards.
+/// The particles on the field and the colours of the light at some moments of a run, recorded during the run and drawn afterwards.
 ///
 /// Of each sixth of the run it shows the moment with the most particles, where the uncertainty is largest.
 pub struct ParticleSnapshots {
@@ -31,6 +31,8 @@ struct Moment {
     stamp: Stamp,
     particles: Vec<[f64; 2]>,
     estimate: Pose2<f64>,
+    /// Number of the active light, and its colours.
+    light: (usize, Vec<NamedEllipse>),
 }
 
 impl ParticleSnapshots {
@@ -46,15 +48,31 @@ impl ParticleSnapshots {
         let n_kept = kept.as_ref().map_or(0, |kept| kept.particles.len());
         if localizer.poses().count() > n_kept {
             let particles = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
-            *kept = Some(Moment { stamp: frame.stamp, particles, estimate: *frame.pose.mean() });
+            let active = localizer.light().active();
+            let light = (active, uv_ellipses(system.map(), localizer.light().member(active)));
+            *kept = Some(Moment { stamp: frame.stamp, particles, estimate: *frame.pose.mean(), light });
         }
     }
 
-    /// The film.
+    /// The colours of the active light over time, and the film of the particles. [Schulz & Fox 2004, Fig. 5]
     ///
     /// # Errors
-    /// Returns an error if a frame cannot be encoded.
-    pub fn draw(&self, run: &ColorRun) -> Result<SvgPlot> {
+    /// Returns an error if a picture cannot be drawn.
+    pub fn draw(&self, run: &ColorRun) -> Result<[SvgPlot; 2]> {
+        let moment = |moment: &Moment| {
+            let (active, ellipses) = &moment.light;
+            (format!("{:.1} s, light {active}, V", run.seconds(moment.stamp)), ellipses.clone())
+        };
+        let colors = CovarianceEllipsesPlot {
+            title: "Colours of the active light over time (1σ in U and V)".to_owned(),
+            x_label: "U".to_owned(),
+            sigmas: 1.0,
+            groups: self.kept.iter().flatten().map(moment).collect(),
+        };
+        Ok([colors.draw()?, self.film(run)?])
+    }
+
+    fn film(&self, run: &ColorRun) -> Result<SvgPlot> {
         let field = field_lines(run.system.map());
         let sheet = Sheet::around(&field);
         let frame = |moment: &Moment| -> Result<FilmStripFrame> {

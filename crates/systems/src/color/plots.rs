@@ -5,14 +5,14 @@ use wayfix_sensor_log::{EncodedImage, Record, RecordData};
 
 use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
-    errors::TrajectorySample,
+    errors::PoseWithTruth,
     plot::{
-        CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError,
-        PlotSeries, PoseErrorPlot, PoseErrorSample, SvgPlot,
+        FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries, PoseErrorPlot,
+        PoseErrorSample, SvgPlot,
     },
 };
 
-/// Plots the path on the field, errors with 3σ bands, the UV ellipses of the colours, and the light over time.
+/// Plots the path on the field, errors with 3σ bands, and the number of particles over time. [Schulz & Fox 2004, Fig. 3]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
@@ -22,20 +22,11 @@ pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
     if !samples.is_empty() {
         plots.push(errors(run, &samples).draw()?);
     }
-    let light = run.system.light();
-    let member = |k: usize| (format!("light {k}, V"), uv_ellipses(run.system.map(), light.member(k)));
-    let ellipses = CovarianceEllipsesPlot {
-        title: "What the colours look like at the end (1σ in U and V)".to_owned(),
-        x_label: "U".to_owned(),
-        sigmas: 1.0,
-        groups: (0..light.n_members()).map(member).collect(),
-    };
-    plots.push(ellipses.draw()?);
     plots.push(particles(run).draw()?);
     Ok(plots)
 }
 
-/// The UV part of every colour's density (Eq. 9).
+/// The UV part of every colour's density. [Schulz & Fox 2004, Eq. 9, Fig. 5]
 pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> {
     let ellipse = |(at, name): (usize, &String)| {
         let density = light.color(ColorId(at as u8));
@@ -49,7 +40,7 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
     map.colors().iter().enumerate().map(ellipse).collect()
 }
 
-/// Camera frames beside their classification, spread evenly over the log.
+/// Camera frames beside their classification, spread evenly over the log. [Schulz & Fox 2004, Fig. 4]
 ///
 /// # Errors
 /// Returns an error if an image cannot be decoded or a picture not be drawn.
@@ -103,7 +94,7 @@ fn paint(label: u8) -> [u8; 3] {
     if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
 }
 
-fn path(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> MapPlot {
+fn path(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> MapPlot {
     let frames = run.system.frames();
     MapPlot {
         title: "Path on the field".to_owned(),
@@ -115,8 +106,8 @@ fn path(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> Ma
     }
 }
 
-fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> PoseErrorPlot {
-    let error_sample = |(frame, sample): &(&ColorFrameResult, TrajectorySample)| {
+fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> PoseErrorPlot {
+    let error_sample = |(frame, sample): &(&ColorFrameResult, PoseWithTruth)| {
         let sigma = sample.covariance.diagonal().map(f64::sqrt);
         PoseErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
     };

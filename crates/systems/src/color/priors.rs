@@ -4,21 +4,14 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use nalgebra::Vector3;
-use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_color_model::{
-    ColorMeans, LightingBank, LightingFilter, LightingFilterParams, LightingPriors, PooledPixelVariance,
-    PriorLearningParams, TrainingVenue, learn_priors,
-};
+use wayfix_color_model::{LightingFilter, LightingFilterBank, LightingFilterParams, LightingPriors};
 use wayfix_kalman::MarkovChain;
-use wayfix_scene_sim::league::{COLOR_NAMES, TrainingParams};
 use wayfix_sensor_log::read_text;
 
 use super::ColorSystemParams;
 
-/// Dark and bright priors, learned from the 44 simulated venues of the four-legged league ([`learn_from_simulation`]).
+/// Dark and bright priors, learned from 44 simulated venues of the four-legged league by `wayfix-experiments fixtures priors`.
 const BUILT_IN: &str = include_str!("../../data/four-legged-priors.json");
-/// Seed of the training venues; no log uses it.
-const TRAINING_SEED: u64 = 2004;
 
 /// The built-in priors for the colours of the four-legged league.
 ///
@@ -37,41 +30,11 @@ pub fn read(path: &Path) -> Result<LightingPriors> {
     serde_json::from_str(&text).with_context(|| format!("the priors in {} are not usable", path.display()))
 }
 
-/// Learns `k` priors from the simulated training venues, darkest first. The built-in priors were made with `k` = 2.
-///
-/// # Errors
-/// Returns an error if learning fails.
-pub fn learn_from_simulation(k: usize) -> Result<LightingPriors> {
-    let venues: Vec<TrainingVenue> = TrainingParams::default()
-        .gather(ChaCha8Rng::seed_from_u64(TRAINING_SEED))?
-        .into_iter()
-        .map(training_venue)
-        .collect();
-    let colors = COLOR_NAMES.map(str::to_owned);
-    let mut rng = ChaCha8Rng::seed_from_u64(TRAINING_SEED + 1);
-    Ok(learn_priors(&colors, &venues, k, &PriorLearningParams::default(), &mut rng)?)
-}
-
-fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVenue {
-    let image = |image: wayfix_scene_sim::league::ColorMeans| {
-        let means = image.means.map(|mean| mean.map(Vector3::from));
-        ColorMeans::new(means.into_iter().zip(image.counts.map(|count| count as u64)))
-    };
-    TrainingVenue {
-        name: venue.name,
-        images: venue.images.into_iter().map(image).collect(),
-        pixels: Some(PooledPixelVariance {
-            variances: Vector3::from(venue.pixel_variance),
-            degrees_of_freedom: venue.degrees_of_freedom,
-        }),
-    }
-}
-
 /// A bank with one lighting filter per prior, with a Markov chain that rarely switches.
 ///
 /// # Errors
 /// Returns an error if a prior or a parameter is invalid.
-pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
+pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingFilterBank> {
     let lighting = LightingFilterParams {
         pixel_color_variance: params
             .pixel_color_variance
@@ -82,5 +45,5 @@ pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<Light
     };
     let filters = priors.members().iter().map(|prior| LightingFilter::new(prior.clone(), lighting));
     let chain = MarkovChain::sticky(priors.members().len(), params.light_persistence)?;
-    Ok(LightingBank::new(filters.collect::<Result<_, _>>()?, chain)?)
+    Ok(LightingFilterBank::new(filters.collect::<Result<_, _>>()?, chain)?)
 }

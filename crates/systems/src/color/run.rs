@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingBank;
+use wayfix_color_model::LightingFilterBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
@@ -15,7 +15,7 @@ use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
     system::{ODOMETRY, RunStep, System, check_overlap, drive, without_odometry_delay},
 };
-use wayfix_evaluation::errors::{ReferencePath, TrajectorySample};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
@@ -35,7 +35,7 @@ pub struct ColorRun {
 pub fn run(
     records: &[Record],
     map: Arc<ColorMap>,
-    bank: LightingBank,
+    bank: LightingFilterBank,
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,
@@ -85,14 +85,10 @@ fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64
 
 impl ColorRun {
     /// Frames with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&ColorFrameResult, TrajectorySample)> {
+    pub fn samples(&self) -> Vec<(&ColorFrameResult, PoseWithTruth)> {
         let sample = |frame: &ColorFrameResult| {
             let truth = self.truth.at(frame.stamp)?;
-            Some(TrajectorySample {
-                estimate: *frame.pose.mean(),
-                covariance: *frame.pose.covariance(),
-                truth,
-            })
+            Some(PoseWithTruth { estimate: *frame.pose.mean(), covariance: *frame.pose.covariance(), truth })
         };
         self.system.frames().iter().filter_map(|frame| Some((frame, sample(frame)?))).collect()
     }

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_color_model::{
-    ColorDensity, ColorLocalizer, ColorLookUpTable, ImageLikelihood, LightingBank, LocalizationStatus,
-    OdometryNoise, OdometryStep, PixelClassifier, Start, YuvImage,
+    ColorDensity, ColorLocalizer, ColorLookUpTable, ImageLikelihoodChoice, LightingFilterBank,
+    LocalizationStatus, OdometryNoise, OdometryStep, PixelClassifier, StartPosePrior, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -26,7 +26,7 @@ pub enum StartPose {
 /// The localizer, fed with the records of a log.
 pub struct ColorSystem {
     map: Arc<ColorMap>,
-    bank: LightingBank,
+    bank: LightingFilterBank,
     params: ColorSystemParams,
     start: StartPose,
     rng: ChaCha8Rng,
@@ -76,13 +76,13 @@ pub struct ColorFrameResult {
     pub step: Duration,
 }
 
-type Localizer = ColorLocalizer<LightingBank, OdometryNoise, ImageLikelihood>;
+type Localizer = ColorLocalizer<LightingFilterBank, OdometryNoise, ImageLikelihoodChoice>;
 
 impl ColorSystem {
     /// Creates a system before its first record.
     pub fn new(
         map: Arc<ColorMap>,
-        bank: LightingBank,
+        bank: LightingFilterBank,
         params: ColorSystemParams,
         start: StartPose,
         seed: u64,
@@ -121,7 +121,7 @@ impl ColorSystem {
     }
 
     /// The most probable light of the localizer; the prior before the first frame.
-    pub fn light(&self) -> &LightingBank {
+    pub fn light(&self) -> &LightingFilterBank {
         self.localizer.as_ref().map_or(&self.bank, ColorLocalizer::light)
     }
 
@@ -241,11 +241,11 @@ impl ColorSystem {
     }
 }
 
-fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<Start> {
-    let StartPose::Near(pose) = start else { return Ok(Start::Anywhere) };
+fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<StartPosePrior> {
+    let StartPose::Near(pose) = start else { return Ok(StartPosePrior::Anywhere) };
     let sigma = params.start_uncertainty.position_sigma;
     let sigmas = Vector3::new(sigma, sigma, params.start_uncertainty.heading_sigma);
-    Ok(Start::Near(Gaussian::from_sigmas(pose, &sigmas)?))
+    Ok(StartPosePrior::Near(Gaussian::from_sigmas(pose, &sigmas)?))
 }
 
 impl System for ColorSystem {

@@ -1,13 +1,13 @@
 use wayfix_sensor_log::{DrawingShape, LogError, Record, RecordData, ViewerDrawing, topics};
 
-use super::{LineSystem, ScanWalls};
+use super::{LineExtractionSystem, ScanWalls};
 use crate::system::{self, EstimateRecorder, EstimateWriter};
 
 /// Writes the walls of every scan beside the records, for viewers.
-pub type LineEstimateRecorder = EstimateRecorder<LineDrawing>;
+pub type LineEstimateRecorder = EstimateRecorder<LineDrawingState>;
 
 /// State of the drawing of [`LineEstimateRecorder`].
-pub struct LineDrawing {
+pub struct LineDrawingState {
     n_written: usize,
     /// Number of walls of the scan before; surplus ones are overwritten with nothing.
     n_walls: usize,
@@ -15,7 +15,7 @@ pub struct LineDrawing {
     frame: &'static str,
 }
 
-impl Default for LineDrawing {
+impl Default for LineDrawingState {
     fn default() -> Self {
         Self { n_written: 0, n_walls: 0, frame: topics::BODY_FRAME }
     }
@@ -23,15 +23,15 @@ impl Default for LineDrawing {
 
 const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 
-impl system::EstimateDrawing for LineDrawing {
-    type System = LineSystem;
+impl system::EstimateDrawer for LineDrawingState {
+    type System = LineExtractionSystem;
 
     const DRAWS_POSES: bool = false;
 
     fn draw(
         &mut self,
         record: &Record,
-        system: &LineSystem,
+        system: &LineExtractionSystem,
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         if let RecordData::TruePose(pose) | RecordData::EstimatedPose(pose) = &record.data {
@@ -41,8 +41,10 @@ impl system::EstimateDrawing for LineDrawing {
         if let RecordData::LaserMount(_) = record.data {
             self.frame = topics::LASER_FRAME;
         }
-        let Some(scan) = system.scans().get(self.n_written) else { return Ok(()) };
-        self.n_written += 1;
+        let Some(scan) = system.latest().filter(|_| system.totals.n_used > self.n_written) else {
+            return Ok(());
+        };
+        self.n_written = system.totals.n_used;
         let drawings = drawings(scan, self.n_walls);
         self.n_walls = scan.segments.len();
         writer.scene_update("/walls", scan.stamp, self.frame, &drawings)

@@ -1,17 +1,17 @@
 use nalgebra::Vector2;
 
-use super::{LineSystem, ScanWalls};
+use super::{LineExtractionSystem, ScanWalls};
 use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 
 /// Number of scans drawn, spread evenly over the log.
 const N_SCANS: usize = 3;
 
-/// Plots all walls of scans with a known pose, and some scans with their walls.
+/// Plots the walls of a sample of scans with a known pose, and some scans with their walls. [Andrade-Cetto 2005, Fig. 1b]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn plots(system: &LineSystem) -> Result<Vec<SvgPlot>, PlotError> {
-    let scans = system.scans();
+pub fn plots(system: &LineExtractionSystem) -> Result<Vec<SvgPlot>, PlotError> {
+    let scans = system.sample();
     let mut plots = Vec::new();
     if scans.iter().any(|scan| scan.pose.is_some()) {
         plots.push(map(system).draw()?);
@@ -23,14 +23,14 @@ pub fn plots(system: &LineSystem) -> Result<Vec<SvgPlot>, PlotError> {
     Ok(plots)
 }
 
-fn map(system: &LineSystem) -> MapPlot {
-    let placed = || system.scans().iter().filter_map(|scan| Some((scan.pose?, scan)));
+fn map(system: &LineExtractionSystem) -> MapPlot {
+    let placed = || system.sample().iter().filter_map(|scan| Some((scan.pose?, scan)));
     let path = placed().map(|(pose, _)| (pose.x(), pose.y())).collect();
     let walls = placed().flat_map(|(pose, scan)| {
         scan.segments.iter().map(move |s| line(pose.transform(&s.start), pose.transform(&s.end)))
     });
     let plot = MapPlot {
-        title: "The walls of all scans, from the poses of the log".to_owned(),
+        title: "The walls of up to 256 scans, from the poses of the log".to_owned(),
         walls: walls.collect(),
         ..MapPlot::default()
     };

@@ -1,21 +1,28 @@
-use std::time::Duration;
+use std::{convert::Infallible, time::Duration};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 
+use super::totals::LineTotals;
 use crate::system::{EventCounts, Stopwatch, System, largest_echo};
+use wayfix_evaluation::plot::Decimated;
 
 /// Extracts the walls of every scan of a log.
-pub struct LineSystem {
+pub struct LineExtractionSystem {
     extractor: LineExtractor,
     pose: Option<(Stamp, Pose2<f64>)>,
     mount: Pose2<f64>,
-    scans: Vec<ScanWalls>,
+    sample: Decimated<ScanWalls>,
+    latest: Option<ScanWalls>,
+    pub(super) totals: LineTotals,
     true_walls: Vec<TrueWall>,
     n_scans: u64,
     events: EventCounts,
 }
+
+/// Scans that are kept for pictures.
+const MOST_SCANS: usize = 256;
 
 /// A scan and the walls in it.
 #[derive(Clone, Debug)]
@@ -32,7 +39,7 @@ pub struct ScanWalls {
     pub step: Duration,
 }
 
-impl LineSystem {
+impl LineExtractionSystem {
     /// Creates a system with these extraction parameters.
     ///
     /// # Errors
@@ -43,19 +50,26 @@ impl LineSystem {
             extractor,
             pose: None,
             mount: Pose2::identity(),
-            scans: Vec::new(),
+            sample: Decimated::new(MOST_SCANS),
+            latest: None,
+            totals: LineTotals::default(),
             true_walls: Vec::new(),
             n_scans: 0,
             events: EventCounts::default(),
         })
     }
 
-    /// The processed scans, in log order.
-    pub fn scans(&self) -> &[ScanWalls] {
-        &self.scans
+    /// Some of the processed scans, evenly spaced: all of a short log, at most 256 of a long one.
+    pub fn sample(&self) -> &[ScanWalls] {
+        self.sample.kept()
     }
 
-    /// The true walls of the log.
+    /// The last processed scan.
+    pub fn latest(&self) -> Option<&ScanWalls> {
+        self.latest.as_ref()
+    }
+
+    /// The true walls of the log so far.
     pub fn true_walls(&self) -> &[TrueWall] {
         &self.true_walls
     }
@@ -79,12 +93,15 @@ impl LineSystem {
         let step = stopwatch.elapsed();
         let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose.compose(&self.mount));
         self.events.add("beam_without_echo", found.counts.skipped() as u64);
-        self.scans.push(ScanWalls { stamp, pose, echoes, segments: found.segments, step });
+        let scan = ScanWalls { stamp, pose, echoes, segments: found.segments, step };
+        self.totals.add(&scan, &self.true_walls);
+        let Ok(()) = self.sample.offer(|| Ok::<_, Infallible>(scan.clone()));
+        self.latest = Some(scan);
         Ok(())
     }
 }
 
-impl System for LineSystem {
+impl System for LineExtractionSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
             RecordData::TruePose(pose) => self.pose = Some((record.stamp, *pose)),

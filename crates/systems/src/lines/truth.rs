@@ -33,18 +33,14 @@ const ON_WALL_M: f64 = 0.03;
 const IN_SIGHT: (usize, f64) = (10, 0.6);
 
 impl WallScore {
-    /// Compares the walls of scans with the true ones; `None` if there are none to compare.
-    pub fn of(scans: &[ScanWalls], truth: &[TrueWall]) -> Option<Self> {
-        let mut score = Self::default();
-        for scan in scans {
-            if let Some(pose) = &scan.pose {
-                score.add(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
-            }
+    /// Compares the walls of a scan with the true ones; nothing happens without a pose or without true walls.
+    pub(super) fn add(&mut self, scan: &ScanWalls, truth: &[TrueWall]) {
+        if let Some(pose) = scan.pose.as_ref().filter(|_| !truth.is_empty()) {
+            self.add_seen(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
         }
-        (score.n_true + score.n_false + score.n_visible > 0 && !truth.is_empty()).then_some(score)
     }
 
-    fn add(&mut self, scan: &ScanWalls, truth: &[Wall]) {
+    fn add_seen(&mut self, scan: &ScanWalls, truth: &[Wall]) {
         let mut found = BTreeSet::new();
         for segment in &scan.segments {
             let apart = |wall: &Wall| wall.distance(&segment.start).max(wall.distance(&segment.end));
@@ -134,6 +130,7 @@ mod tests {
     use wayfix_sensor_log::Stamp;
 
     use super::*;
+    use crate::lines::totals::LineTotals;
 
     /// A wall 2 m ahead of a robot at (1, 1) with heading along y, seen by 61 beams `off` metres too far.
     fn scan(off: f64) -> ScanWalls {
@@ -154,9 +151,15 @@ mod tests {
         TrueWall { id: 0, start: Vector2::new(x1, 3.0), end: Vector2::new(x2, 3.0) }
     }
 
+    fn score(scan: &ScanWalls, truth: &[TrueWall]) -> Option<WallScore> {
+        let mut totals = LineTotals::default();
+        totals.add(scan, truth);
+        totals.score()
+    }
+
     #[test]
     fn wall_in_place_is_within_two_sigma_and_a_shifted_one_not() {
-        let score = |off: f64| WallScore::of(&[scan(off)], &[wall(-9.0, 9.0)]).unwrap();
+        let score = |off: f64| score(&scan(off), &[wall(-9.0, 9.0)]).unwrap();
         let right = score(0.0);
         assert_eq!((right.n_true, right.n_within_2_sigma, right.n_visible, right.n_missed), (1, 1, 1, 0));
         assert!(right.squared_sum < 1e-12);
@@ -170,10 +173,10 @@ mod tests {
     #[test]
     fn a_wall_that_is_not_found_is_missed() {
         let blind = ScanWalls { segments: Vec::new(), ..scan(0.0) };
-        let score = WallScore::of(std::slice::from_ref(&blind), &[wall(-9.0, 9.0)]).unwrap();
-        assert_eq!((score.n_visible, score.n_missed), (1, 1));
+        let missed = score(&blind, &[wall(-9.0, 9.0)]).unwrap();
+        assert_eq!((missed.n_visible, missed.n_missed), (1, 1));
         let nowhere = ScanWalls { pose: None, ..blind };
-        assert_eq!(WallScore::of(&[nowhere], &[wall(-9.0, 9.0)]), None);
-        assert_eq!(WallScore::of(&[scan(0.0)], &[]), None);
+        assert_eq!(score(&nowhere, &[wall(-9.0, 9.0)]), None);
+        assert_eq!(score(&scan(0.0), &[]), None);
     }
 }

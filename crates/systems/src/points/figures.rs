@@ -1,11 +1,13 @@
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use nalgebra::{Matrix2, Vector2, linalg::Cholesky};
+use wayfix_estimation_traits::{LieGroup, Pose2, SensorModel};
 use wayfix_evaluation::{
     errors::{align, landmark_errors, median_distance, rms_distance},
     report::{Metric, ReportRun},
 };
 
 use super::PointRun;
-use crate::slam::summary;
+use crate::slam::{FrontEnd, StampedEstimate, summary};
+use wayfix_slam_ekf::PositionSensor;
 
 /// The figures and events of a run, ready for the report.
 pub fn summarize(run: &mut PointRun) -> ReportRun {
@@ -40,5 +42,20 @@ fn position_metrics(run: &PointRun) -> Vec<Metric> {
     add("ate_aligned_rmse_m", rms_distance(estimated.clone(), &motion));
     add("ate_aligned_median_m", median_distance(estimated, &motion));
     add("dead_reckoning_aligned_rmse_m", rms_distance(reckoned.clone(), &align(reckoned)));
+    metrics.extend(position_nees(run).map(|nees| Metric::new("position_nees_mean", nees, "")));
     metrics
+}
+
+/// Mean NEES of the positions, 2 for an honest filter, where the parameters tell the noise of the true ones.
+fn position_nees(run: &PointRun) -> Option<f64> {
+    let (external, antenna) = run.system.front_end.external();
+    let truth = Matrix2::identity() * external.position_sigma?.powi(2);
+    let nees = |(at, estimate, truth_at): &(StampedEstimate, Vector2<f64>, Vector2<f64>)| {
+        let jacobian = PositionSensor { antenna, covariance: truth }.jacobian(&at.pose);
+        let covariance = jacobian * at.covariance * jacobian.transpose() + truth;
+        let error = truth_at - estimate;
+        Some(error.dot(&Cholesky::new(covariance)?.solve(&error)))
+    };
+    let all: Option<Vec<f64>> = run.positions().iter().map(nees).collect();
+    all.map(|all| all.iter().sum::<f64>() / all.len() as f64)
 }

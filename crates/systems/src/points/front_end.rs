@@ -4,16 +4,17 @@ use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LogError, Record, RecordData, Stamp, Velocity,
 };
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkId, MotionWithRangeScale, MountedSensor, Observation, PoseWithRangeScale, RangeBearing,
-    RangeBearingSensor, RangeBearingSensorWithScale, SlamError, SlamParams,
+    EkfSlam, ExternalParams, LandmarkId, MotionWithRangeScale, MountedSensor, Observation,
+    PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, SequentialMotion,
+    SlamError, SlamParams, UnknownMotion,
 };
 
 use super::{
-    MountingParams, OdometryEncoding, PointSlamParams, commands::Commands, drawing,
-    sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
+    MountingParams, OdometryRecordKind, PointSlamParams, commands::Commands, drawing,
+    state::PointFrontEndState,
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -21,17 +22,17 @@ use crate::{
 pub type PointSensor = RangeBearingSensorWithScale<MountedSensor<RangeBearingSensor>>;
 
 /// EKF-SLAM with points.
-pub type PointSystem = SlamSystem<PointFrontEnd>;
+pub type PointSystem = SlamSystem<PointSlamFrontEnd>;
 
 /// Detections of points with odometry that may come late.
-pub struct PointFrontEnd {
+pub struct PointSlamFrontEnd {
     pub(super) params: PointSlamParams,
     pub(super) commands: Commands,
     /// How the robot has moved by its commands.
     pub(super) motion: MotionStatistics,
     plausible: IncrementPlausibilityCheck,
     /// The kind of odometry that came first.
-    pub(super) odometry: Option<OdometryEncoding>,
+    pub(super) odometry: Option<OdometryRecordKind>,
     /// The time of the filter's state.
     pub(super) time: Stamp,
 }
@@ -49,7 +50,7 @@ impl PointSystem {
         start_covariance: &Matrix3<f64>,
     ) -> Result<Self, SlamError> {
         let params = params.validated()?;
-        let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
+        let association = rule.with(params.nearest_neighbour, params.joint_compatibility)?;
         // Two identities are two landmarks, however near they stand.
         let (confirmation, merging) = match rule {
             AssociationRule::Known => (params.filter.confirmation, None),
@@ -66,7 +67,7 @@ impl PointSystem {
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        let front_end = PointFrontEnd {
+        let front_end = PointSlamFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
             plausible: IncrementPlausibilityCheck::default(),
@@ -79,22 +80,21 @@ impl PointSystem {
 
     /// Where the antenna is when the robot is at `pose`.
     pub fn antenna(&self, pose: &Pose2<f64>) -> Vector2<f64> {
-        let MountingParams { antenna_x, antenna_y, .. } = self.front_end.params.mounting;
-        pose.transform(&Vector2::new(antenna_x, antenna_y))
+        pose.transform(&self.front_end.external().1)
     }
 }
 
 type Points = SlamEstimator<PointSensor>;
 
-impl FrontEnd for PointFrontEnd {
+impl FrontEnd for PointSlamFrontEnd {
     type Model = PointSensor;
-    type State = PointState;
+    type State = PointFrontEndState;
 
     fn take(&mut self, record: &Record, estimator: &mut Points) -> Result<(), String> {
         let stamp = record.stamp;
         match &record.data {
-            odometry if OdometryEncoding::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
-                estimator.events.count("second_odometry_source");
+            odometry if OdometryRecordKind::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
+                estimator.events.count("second_odometry_source_ignored");
                 Ok(())
             }
             RecordData::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
@@ -105,6 +105,18 @@ impl FrontEnd for PointFrontEnd {
         }
     }
 
+    fn external(&self) -> (&ExternalParams, Vector2<f64>) {
+        let MountingParams { antenna_x, antenna_y, .. } = self.params.mounting;
+        (&self.params.external, Vector2::new(antenna_x, antenna_y))
+    }
+
+    /// The filter makes the whole motion.
+    fn motion_to(&mut self, stamp: Stamp, estimator: &mut Points) -> Result<Option<MotionEstimate>, String> {
+        let has_started = stamp >= self.time;
+        self.advance_to(stamp, estimator)?;
+        Ok(has_started.then(|| (Pose2::identity(), Matrix3::zeros())))
+    }
+
     fn draw_map(
         filter: &EkfSlam<PointSensor>,
         stamp: Stamp,
@@ -113,12 +125,12 @@ impl FrontEnd for PointFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn state(&self) -> PointState {
-        PointState::of(self)
+    fn state(&self) -> PointFrontEndState {
+        PointFrontEndState::of(self)
     }
 }
 
-impl PointFrontEnd {
+impl PointSlamFrontEnd {
     fn take_velocity(
         &mut self,
         stamp: Stamp,
@@ -185,7 +197,7 @@ impl PointFrontEnd {
     }
 
     /// Whether this kind of odometry moves the robot: the kind that comes first does. A log may record one motion in two kinds.
-    fn moves_by(&mut self, odometry: OdometryEncoding) -> bool {
+    fn moves_by(&mut self, odometry: OdometryRecordKind) -> bool {
         *self.odometry.get_or_insert(odometry) == odometry
     }
 

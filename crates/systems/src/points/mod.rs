@@ -8,13 +8,11 @@ mod params;
 mod plots;
 mod ranges;
 mod run;
-mod sequential_motion;
 mod state;
-mod unknown_motion;
 
 pub use figures::summarize;
-pub use front_end::{PointFrontEnd, PointSensor, PointSystem};
+pub use front_end::{PointSensor, PointSlamFrontEnd, PointSystem};
 pub use params::{MountingParams, PointSlamParams, RobotProfile, RobotTimingParams};
 pub use plots::plots;
 pub use run::{PointRun, run, run_on};
-pub use state::{OdometryEncoding, PointState, SavedPointMap};
+pub use state::{OdometryRecordKind, PointFrontEndState, SavedPointMap};

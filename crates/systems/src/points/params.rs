@@ -1,11 +1,11 @@
 use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_sensor_log::{LogFormat, LogMeta};
+use wayfix_sensor_log::{LogFormat, LogMetadata};
 use wayfix_slam_ekf::{
-    AckermannVehicle, CorrelatedNoise, JointCompatibilityParams, LandmarkConfirmationParams,
-    LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule, RangeBearingSensor,
-    SlamParams, VelocityMotion,
+    AckermannVehicle, AnchorParams, CorrelatedNoise, ExternalParams, JointCompatibilityParams,
+    LandmarkConfirmationParams, LandmarkMergingParams, NearestNeighbourParams, OdometryMotion, OutlierRule,
+    RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_TIMEOUT};
@@ -33,6 +33,11 @@ pub struct PointSlamParams {
     /// Number of true landmarks of the log, nearest to the start first, that the robot is given as known: anchors that tie the map to the
     /// world. For logs that have true landmarks.
     pub n_anchors: usize,
+    /// Landmarks that are known before the run.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub anchors: Vec<AnchorParams<[f64; 2]>>,
+    /// Sensors of the pose that do not use the map.
+    pub external: ExternalParams,
     /// Timing of the robot, kind and scale of its ranges.
     pub robot: RobotTimingParams,
     /// Where things sit on the robot.
@@ -68,7 +73,7 @@ pub struct MountingParams {
     pub sensor_y: f64,
     /// Which way it looks, rad; 0 ahead, counter-clockwise.
     pub sensor_heading: f64,
-    /// The antenna whose true positions the log has, m.
+    /// The antenna whose positions the log has, m.
     pub antenna_x: f64,
     /// The antenna, m.
     pub antenna_y: f64,
@@ -121,7 +126,7 @@ pub enum RobotProfile {
 
 impl RobotProfile {
     /// The robot that recorded a log, as far as the format tells that it was first stored in.
-    pub fn of_log(meta: &LogMeta) -> Self {
+    pub fn of_log(meta: &LogMetadata) -> Self {
         match meta.first_format() {
             LogFormat::Utias => Self::Utias,
             LogFormat::RangeBearing => Self::RangeBearing,
@@ -140,6 +145,8 @@ impl PointSlamParams {
                 association: None,
                 start_pose: None,
                 n_anchors: 0,
+                anchors: Vec::new(),
+                external: ExternalParams::default(),
                 robot: RobotTimingParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),
@@ -151,7 +158,7 @@ impl PointSlamParams {
                 joint_compatibility: JointCompatibilityParams::default(),
                 unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 3,
-                    max_missed: Some(20),
+                    max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
                 record_observability: false,
@@ -202,7 +209,7 @@ impl PointSlamParams {
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
-                    max_missed: Some(5),
+                    max_consecutive_misses: Some(5),
                     min_detection_rate: 0.4,
                     ..LandmarkConfirmationParams::default()
                 },
@@ -251,7 +258,7 @@ impl PointSlamParams {
                 },
                 unlabelled_confirmation: LandmarkConfirmationParams {
                     min_detections: 8,
-                    max_missed: Some(20),
+                    max_consecutive_misses: Some(20),
                     ..LandmarkConfirmationParams::default()
                 },
                 ..Self::of(RobotProfile::Generic)
@@ -285,12 +292,12 @@ mod tests {
 
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
-        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_missed = 7";
+        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_consecutive_misses = 7";
         let params = PointSlamParams::from_toml(text, RobotProfile::Utias).unwrap();
         let mut expected = PointSlamParams::of(RobotProfile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
-        expected.filter.confirmation.max_missed = Some(7);
+        expected.filter.confirmation.max_consecutive_misses = Some(7);
         assert_eq!(params, expected);
     }
 

@@ -87,9 +87,9 @@ impl PointSlamParams {
             number!(filter.confirmation.min_detection_rate, SHARE),
             number!(unlabelled_confirmation.min_detection_rate, SHARE),
             ("filter.confirmation.min_detections", times_seen(&filter.confirmation), TIMES_SEEN),
-            number!(filter.confirmation.restart_nis, THRESHOLD),
+            number!(filter.confirmation.tentative_restart_nis, THRESHOLD),
             ("unlabelled_confirmation.min_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
-            number!(unlabelled_confirmation.restart_nis, THRESHOLD),
+            number!(unlabelled_confirmation.tentative_restart_nis, THRESHOLD),
         ]
         .into_iter()
         .chain(increment_numbers(increment_noise).map(|(name, value)| (name, value, NOT_NEGATIVE)))

@@ -1,20 +1,20 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Result, bail};
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePositions, align};
-use wayfix_sensor_log::{DetectionTarget, Record, RecordData, Stamp};
+use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{PointFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
+use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::{
     slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_start},
     system::{EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap},
 };
 
 /// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
-pub type PointRun = SlamRun<PointFrontEnd, BTreeMap<u32, Vector2<f64>>>;
+pub type PointRun = SlamRun<PointSlamFrontEnd, BTreeMap<u32, Vector2<f64>>>;
 
 /// Runs EKF-SLAM over the records of a log and shows each step to `observe`.
 ///
@@ -52,6 +52,8 @@ pub fn run(
     for (id, landmark) in anchors(records, association, &start, params.n_anchors) {
         system.add_anchor(id, landmark)?;
     }
+    let seen = (association == AssociationRule::Known).then(|| identities(records));
+    system.estimator.filter.add_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
     drive_through(system, truth, records, observe)
 }
 
@@ -155,7 +157,9 @@ fn why(events: &EventCounts) -> String {
 /// their stamp, at the last record before the first of them.
 fn start_stamp(records: &[Record]) -> Option<Stamp> {
     let first = records.iter().find(|record| odometry_stamp(record).is_some())?;
-    let earlier = records.iter().map(|record| record.stamp).take_while(|stamp| *stamp < first.stamp).last();
+    let is_own = |record: &&Record| !matches!(record.data, RecordData::PoseMeasurement(_));
+    let stamps = records.iter().filter(is_own).map(|record| record.stamp);
+    let earlier = stamps.take_while(|stamp| *stamp < first.stamp).last();
     match first.data {
         RecordData::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
         _ => Some(first.stamp),
@@ -186,13 +190,25 @@ fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<Ass
     Ok(association)
 }
 
-/// Whether any detection of a landmark carries an identity; `None` when there are no such detections.
-fn has_identities(records: &[Record]) -> Option<bool> {
-    let detections = records.iter().flat_map(|record| match &record.data {
+fn detections(records: &[Record]) -> impl Iterator<Item = &Detection> {
+    records.iter().flat_map(|record| match &record.data {
         RecordData::Detections(detections) => detections.as_slice(),
         _ => &[],
-    });
-    detections.fold(None, |found, detection| match detection.target {
+    })
+}
+
+/// The identities of the detections.
+fn identities(records: &[Record]) -> BTreeSet<u32> {
+    let id = |detection: &Detection| match detection.target {
+        DetectionTarget::Landmark(id) => Some(id),
+        _ => None,
+    };
+    detections(records).filter_map(id).collect()
+}
+
+/// Whether any detection of a landmark carries an identity; `None` when there are no such detections.
+fn has_identities(records: &[Record]) -> Option<bool> {
+    detections(records).fold(None, |found, detection| match detection.target {
         DetectionTarget::Landmark(_) => Some(true),
         DetectionTarget::Unlabelled => found.or(Some(false)),
         _ => found,

@@ -3,36 +3,36 @@ use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{RecordData, Stamp, Velocity};
 use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
 
-use super::{PointFrontEnd, PointSlamParams, PointSystem};
+use super::{PointSlamFrontEnd, PointSlamParams, PointSystem};
 use crate::{
     slam::{FrontEndState, SavedMapError, SlamState, check_association},
     system::{MotionStatistics, check_velocity},
 };
 
 /// A map of points.
-pub type SavedPointMap = SlamState<PoseWithRangeScale, Vector2<f64>, PointState>;
+pub type SavedPointMap = SlamState<PoseWithRangeScale, Vector2<f64>, PointFrontEndState>;
 
-/// All that a [`PointFrontEnd`] remembers between two records.
+/// All that a [`PointSlamFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PointState {
+pub struct PointFrontEndState {
     /// The time of the filter's state, nanoseconds: earlier than the last record where the sensor is late.
     pub time: u64,
     /// The kind of odometry that moves the robot; unknown before the first.
-    pub odometry: Option<OdometryEncoding>,
+    pub odometry: Option<OdometryRecordKind>,
     /// Commands that still act: nanoseconds, m/s, rad/s.
     pub commands: Vec<(u64, f64, f64)>,
     /// How the robot has moved by its commands.
     pub motion: MotionStatistics,
 }
 
-impl FrontEndState for PointState {
+impl FrontEndState for PointFrontEndState {
     const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
     const LANDMARK: (&str, usize) = ("point in the plane", 2);
 }
 
 /// The kind of odometry that moves a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OdometryEncoding {
+pub enum OdometryRecordKind {
     /// Velocities, each held until the next.
     Velocities,
     /// Increments.
@@ -41,7 +41,7 @@ pub enum OdometryEncoding {
     Drives,
 }
 
-impl OdometryEncoding {
+impl OdometryRecordKind {
     /// The kind of a record; `None` when it is no odometry.
     pub(super) fn of(data: &RecordData) -> Option<Self> {
         match data {
@@ -53,8 +53,8 @@ impl OdometryEncoding {
     }
 }
 
-impl PointState {
-    pub(super) fn of(front_end: &PointFrontEnd) -> Self {
+impl PointFrontEndState {
+    pub(super) fn of(front_end: &PointSlamFrontEnd) -> Self {
         let command =
             |(stamp, velocity): (Stamp, Velocity)| (stamp.nanoseconds(), velocity.linear, velocity.angular);
         Self {
@@ -73,7 +73,7 @@ impl PointSystem {
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(params: PointSlamParams, saved: SavedPointMap) -> Result<Self, SavedMapError> {
         let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved;
-        let PointState { time, odometry, commands, motion } = front_end;
+        let PointFrontEndState { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
         let mut system =

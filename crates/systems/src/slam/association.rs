@@ -1,11 +1,9 @@
 use clap::ValueEnum;
-use nalgebra::DefaultAllocator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_slam_ekf::{
-    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
-    LandmarkDim, LandmarkModel, MeasurementDim, NearestNeighbour, NearestNeighbourParams, Observation,
-    RobotDim, SlamAlloc, SlamError,
+    AnyAssociation, JointCompatibility, JointCompatibilityParams, KnownIdAssociation, NearestNeighbour,
+    NearestNeighbourParams, SlamError,
 };
 
 /// How detections find their landmarks.
@@ -20,68 +18,28 @@ pub enum AssociationRule {
     Jcbb,
 }
 
-/// The rule of association that a run chose.
-pub(crate) enum ChosenRule {
-    Known(KnownIds),
-    NearestNeighbour(NearestNeighbour),
-    JointCompatibility(JointCompatibility),
-}
-
-impl ChosenRule {
+impl AssociationRule {
+    /// The rule with its thresholds.
+    ///
     /// # Errors
     /// Returns an error if a threshold is out of range.
-    pub(crate) fn new(
-        rule: AssociationRule,
+    pub(crate) fn with(
+        self,
         nearest_neighbour: NearestNeighbourParams,
         joint_compatibility: JointCompatibilityParams,
-    ) -> Result<Self, SlamError> {
-        Ok(match rule {
-            AssociationRule::Known => Self::Known(KnownIds),
-            AssociationRule::Nn => Self::NearestNeighbour(NearestNeighbour::new(nearest_neighbour)?),
-            AssociationRule::Jcbb => Self::JointCompatibility(JointCompatibility::new(joint_compatibility)?),
+    ) -> Result<AnyAssociation, SlamError> {
+        Ok(match self {
+            Self::Known => AnyAssociation::Known(KnownIdAssociation),
+            Self::Nn => AnyAssociation::NearestNeighbour(NearestNeighbour::new(nearest_neighbour)?),
+            Self::Jcbb => AnyAssociation::JointCompatibility(JointCompatibility::new(joint_compatibility)?),
         })
     }
 
-    pub(super) fn rule(&self) -> AssociationRule {
-        match self {
-            Self::Known(_) => AssociationRule::Known,
-            Self::NearestNeighbour(_) => AssociationRule::Nn,
-            Self::JointCompatibility(_) => AssociationRule::Jcbb,
-        }
-    }
-
-    /// The identity of the next new landmark; `None` where the sensor reads identities.
-    pub(super) fn next_id(&self) -> Option<u32> {
-        match self {
-            Self::Known(_) => None,
-            Self::NearestNeighbour(rule) => Some(rule.next_id()),
-            Self::JointCompatibility(rule) => Some(rule.next_id()),
-        }
-    }
-
-    /// The same rule with this identity for the next new landmark.
-    pub(super) fn numbering_from(self, next_id: Option<u32>) -> Self {
-        match (self, next_id) {
-            (Self::NearestNeighbour(rule), Some(id)) => Self::NearestNeighbour(rule.numbering_from(id)),
-            (Self::JointCompatibility(rule), Some(id)) => Self::JointCompatibility(rule.numbering_from(id)),
-            (rule, _) => rule,
-        }
-    }
-}
-
-impl<M: LandmarkModel> DataAssociation<M> for ChosenRule
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    fn associate(
-        &mut self,
-        filter: &EkfSlam<M>,
-        observations: &[Observation<M::Measurement>],
-    ) -> Vec<Association> {
-        match self {
-            Self::Known(rule) => rule.associate(filter, observations),
-            Self::NearestNeighbour(rule) => rule.associate(filter, observations),
-            Self::JointCompatibility(rule) => rule.associate(filter, observations),
+    pub(super) fn of(association: &AnyAssociation) -> Self {
+        match association {
+            AnyAssociation::Known(_) => Self::Known,
+            AnyAssociation::NearestNeighbour(_) => Self::Nn,
+            AnyAssociation::JointCompatibility(_) => Self::Jcbb,
         }
     }
 }

@@ -1,33 +1,36 @@
 use std::marker::PhantomData;
 
 use nalgebra::DefaultAllocator;
-use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogError, Record, topics};
+use wayfix_sensor_log::{LogError, Record};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{FrontEnd, SlamSystem};
-use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
+use crate::system::{self, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
 
 /// Path and map beside the records, for viewers.
-pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawing<F>>;
+pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawingState<F>>;
 
 /// What [`SlamEstimateRecorder`] has drawn so far.
-pub struct SlamDrawing<F> {
+pub struct SlamDrawingState<F> {
     n_written: usize,
-    path: Vec<Pose2<f64>>,
+    path: PathPieces,
+    /// Number of estimates at which the map is written next.
+    next_map: usize,
     front_end: PhantomData<fn() -> F>,
 }
 
-impl<F> Default for SlamDrawing<F> {
+impl<F> Default for SlamDrawingState<F> {
     fn default() -> Self {
-        Self { n_written: 0, path: Vec::new(), front_end: PhantomData }
+        Self { n_written: 0, path: PathPieces::default(), next_map: 1, front_end: PhantomData }
     }
 }
 
-/// The map and the whole path are written with every so many estimates: they change slowly and are long.
+/// The map is written with every so many estimates: it changes slowly and is long.
 const MAP_PERIOD: usize = 20;
+/// In a long log the period is this part of the estimates so far, so that the maps do not outgrow the log.
+const MAP_PERIOD_SHARE: usize = 100;
 
-impl<F: FrontEnd> system::EstimateDrawing for SlamDrawing<F>
+impl<F: FrontEnd> system::EstimateDrawer for SlamDrawingState<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -40,15 +43,14 @@ where
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         for estimate in &system.stamped_estimates()[self.n_written..] {
-            self.path.push(estimate.pose);
+            self.n_written += 1;
+            self.path.push(estimate.stamp, &estimate.pose, writer)?;
             write_robot(writer, estimate.stamp, &estimate.pose, &estimate.covariance)?;
-            if self.path.len() % MAP_PERIOD == 1 {
-                let (stamp, world) = (estimate.stamp, topics::WORLD_FRAME);
-                writer.poses_in_frame("/estimate/path", stamp, world, &self.path)?;
-                F::draw_map(system.filter(), stamp, writer)?;
+            if self.n_written >= self.next_map {
+                self.next_map = self.n_written + MAP_PERIOD.max(self.n_written / MAP_PERIOD_SHARE);
+                F::draw_map(system.filter(), estimate.stamp, writer)?;
             }
         }
-        self.n_written = system.stamped_estimates().len();
         Ok(())
     }
 }

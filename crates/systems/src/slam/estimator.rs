@@ -4,11 +4,10 @@ use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allo
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, ObservationOutcome,
-    RobotDim, SlamAlloc, UpdateReport, observability::ObservabilityRecorder,
+    AnyAssociation, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation,
+    ObservationOutcome, RobotDim, SlamAlloc, UpdateReport, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, ChosenRule, event_name};
 use crate::system::EventCounts;
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
@@ -36,7 +35,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     pub(crate) filter: EkfSlam<M>,
-    pub(super) association: ChosenRule,
+    pub(super) association: AnyAssociation,
     pub(super) observability: Option<ObservabilityRecorder>,
     pub(crate) dead_reckoning: Pose2<f64>,
     pub(super) stamped_estimates: Vec<StampedEstimate>,
@@ -51,7 +50,7 @@ where
 {
     pub(crate) fn new(
         filter: EkfSlam<M>,
-        association: ChosenRule,
+        association: AnyAssociation,
         records_observability: bool,
         start: Pose2<f64>,
     ) -> Self {
@@ -92,13 +91,13 @@ where
             recorder.record(&self.filter, &seen_landmarks(&report));
         }
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
-            let name = event_name(outcome);
+            let name = outcome.event_name();
             match outcome {
                 ObservationOutcome::Unusable => {
                     self.events.refuse(name, format!("{} is not usable", describe(measurement)));
                 }
                 ObservationOutcome::Duplicate { landmark }
-                    if self.association.rule() == AssociationRule::Known =>
+                    if matches!(self.association, AnyAssociation::Known(_)) =>
                 {
                     self.events.refuse(name, format!("landmark {landmark} a second time in one scan"));
                 }

@@ -1,6 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::{TrajectorySample, trajectory_errors},
+    errors::{PoseWithTruth, relative_errors, trajectory_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_slam_ekf::{
@@ -10,8 +10,13 @@ use wayfix_slam_ekf::{
 use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// Events that count a refused observation or record.
-const REJECTIONS: [&str; 4] =
-    ["observation_gated", "observation_duplicate", "observation_unusable", "record_refused"];
+const REJECTIONS: [&str; 5] = [
+    "observation_rejected_by_gate",
+    "observation_duplicate",
+    "observation_unusable",
+    "measurement_gated",
+    "record_refused",
+];
 
 /// The figures and events of a run, ready for the report; `of_map` are the figures of the kind of landmark.
 pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun
@@ -37,16 +42,20 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     let samples = run.samples();
-    let errors_of = |samples: Vec<TrajectorySample>| trajectory_errors(&samples);
+    let errors_of = |samples: Vec<PoseWithTruth>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
-    if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
+    let of_filter: Vec<PoseWithTruth> = samples.iter().map(|(_, sample)| *sample).collect();
+    let relative = relative_errors(&of_filter);
+    if let Some(errors) = errors_of(of_filter) {
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
         metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
+        metrics.extend(relative.per_meter.map(|error| Metric::new("rpe_m_per_m", error, "m/m")));
+        metrics.extend(relative.per_radian.map(|error| Metric::new("rpe_rad_per_rad", error, "rad/rad")));
         let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
-    let reckoned = |(at, sample): &(StampedEstimate, TrajectorySample)| TrajectorySample {
+    let reckoned = |(at, sample): &(StampedEstimate, PoseWithTruth)| PoseWithTruth {
         estimate: at.dead_reckoning,
         ..*sample
     };

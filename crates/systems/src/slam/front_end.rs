@@ -1,10 +1,16 @@
-use nalgebra::DefaultAllocator;
+use nalgebra::{DefaultAllocator, Matrix3, Vector2};
 use serde::{Serialize, de::DeserializeOwned};
+use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, Stamp};
-use wayfix_slam_ekf::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
+use wayfix_slam_ekf::{
+    EkfSlam, ExternalParams, LandmarkDim, LandmarkModel, MeasurementDim, PlanarRobot, RobotDim, SlamAlloc,
+};
 
 use super::SlamEstimator;
 use crate::system::EstimateWriter;
+
+/// A motion, and its covariance in the body frame at its end.
+pub type MotionEstimate = (Pose2<f64>, Matrix3<f64>);
 
 /// What turns the records of a log into predictions and updates of EKF-SLAM, for one kind of landmark.
 pub trait FrontEnd
@@ -12,7 +18,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<Self::Model>, LandmarkDim<Self::Model>, MeasurementDim<Self::Model>>,
 {
     /// Robot, landmark and measurement.
-    type Model: LandmarkModel + Clone;
+    type Model: LandmarkModel<Robot: PlanarRobot> + Clone;
     /// What it keeps between two records.
     type State: FrontEndState;
 
@@ -29,6 +35,19 @@ where
     fn finish(&mut self, _: &mut SlamEstimator<Self::Model>) -> Result<(), String> {
         Ok(())
     }
+
+    /// Parameters of sensors that do not use the map, and the antenna in the robot frame, m.
+    fn external(&self) -> (&ExternalParams, Vector2<f64>);
+
+    /// Moves the robot to a stamp. Returns the motion that the filter has not made; `None` before the run starts.
+    ///
+    /// # Errors
+    /// Returns why it cannot be moved.
+    fn motion_to(
+        &mut self,
+        stamp: Stamp,
+        estimator: &mut SlamEstimator<Self::Model>,
+    ) -> Result<Option<MotionEstimate>, String>;
 
     /// The stamp up to which records changed the state, where `taken_until` is the stamp of the last record.
     fn settled_until(&self, taken_until: Stamp) -> Stamp {

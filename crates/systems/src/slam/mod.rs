@@ -6,7 +6,7 @@
 mod association;
 mod estimates;
 mod estimator;
-mod event_name;
+mod external;
 mod figures;
 mod front_end;
 mod increment_numbers;
@@ -17,18 +17,16 @@ mod start;
 mod system;
 
 pub use association::AssociationRule;
-pub(crate) use association::ChosenRule;
-pub use estimates::{SlamDrawing, SlamEstimateRecorder};
+pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
-use event_name::event_name;
 pub(crate) use figures::summary;
-pub use front_end::{FrontEnd, FrontEndState};
+pub use front_end::{FrontEnd, FrontEndState, MotionEstimate};
 pub(crate) use increment_numbers::increment_numbers;
 pub(crate) use plots::plots_with;
 pub use run::SlamRun;
 pub(crate) use saved::check_association;
-pub use saved::{PeriodicSaver, SavedMapError, SlamState};
+pub use saved::{PeriodicStateSaver, SavedMapError, SlamState};
 pub(crate) use start::{
     start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
 };

@@ -1,6 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::TrajectorySample,
+    errors::PoseWithTruth,
     plot::{
         AxisScale, ConsistencyPlot, MapPlot, PlotError, PoseErrorPlot, PoseErrorSample, StepTimesPlot,
         SvgPlot,
@@ -44,8 +44,8 @@ where
     Ok(plots)
 }
 
-fn errors(samples: &[(StampedEstimate, TrajectorySample)]) -> PoseErrorPlot {
-    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
+fn errors(samples: &[(StampedEstimate, PoseWithTruth)]) -> PoseErrorPlot {
+    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         let sigma = stamped_estimate.covariance.diagonal().map(f64::sqrt);
         PoseErrorSample {
             t: seconds(samples, stamped_estimate),
@@ -59,8 +59,8 @@ fn errors(samples: &[(StampedEstimate, TrajectorySample)]) -> PoseErrorPlot {
     }
 }
 
-fn consistency(samples: &[(StampedEstimate, TrajectorySample)]) -> Option<ConsistencyPlot> {
-    let nees = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
+fn consistency(samples: &[(StampedEstimate, PoseWithTruth)]) -> Option<ConsistencyPlot> {
+    let nees = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         Some((seconds(samples, stamped_estimate), sample.nees()?))
     };
     let samples: Vec<_> = samples.iter().filter_map(nees).collect();
@@ -90,6 +90,6 @@ fn times(stamped_estimates: &[StampedEstimate]) -> StepTimesPlot {
 }
 
 /// Time since the first sample.
-fn seconds(samples: &[(StampedEstimate, TrajectorySample)], stamped_estimate: &StampedEstimate) -> f64 {
+fn seconds(samples: &[(StampedEstimate, PoseWithTruth)], stamped_estimate: &StampedEstimate) -> f64 {
     samples.first().map_or(0.0, |(first, _)| stamped_estimate.stamp.seconds_since(first.stamp))
 }

@@ -1,5 +1,5 @@
 use nalgebra::{DefaultAllocator, Vector2};
-use wayfix_evaluation::errors::{ReferencePath, TrajectorySample, TruePositions};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
@@ -44,7 +44,7 @@ where
     }
 
     /// Estimates with their true poses.
-    pub fn samples(&self) -> Vec<(StampedEstimate, TrajectorySample)> {
+    pub fn samples(&self) -> Vec<(StampedEstimate, PoseWithTruth)> {
         let sample = |estimate: &StampedEstimate| {
             let StampedEstimate { stamp, pose, covariance, .. } = estimate;
             Some((*estimate, self.truth.sample(*stamp, *pose, covariance)?))

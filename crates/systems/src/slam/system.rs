@@ -1,12 +1,14 @@
 use nalgebra::DefaultAllocator;
-use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Record, Stamp};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::{PoseMeasurement, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
-    SlamSnapshot, observability::ObservabilityRecorder,
+    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement, MeasurementDim, RobotDim, SlamAlloc,
+    SlamError, SlamSnapshot, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate};
+use super::{
+    AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate, external::in_map,
+};
 use crate::system::{EventCounts, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -20,6 +22,9 @@ where
     taken_until: Stamp,
     /// Records up to this stamp were taken by the run that this one goes on from.
     resumed_at: Option<Stamp>,
+    last_increment: Option<Stamp>,
+    /// Measurements of the pose that wait for the increment that leads beyond them.
+    waiting: Vec<(Stamp, MapMeasurement)>,
 }
 
 /// The identity of the first anchor of a map without identities; association gives smaller ones.
@@ -37,7 +42,8 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     pub(crate) fn new(front_end: F, estimator: SlamEstimator<F::Model>) -> Self {
-        Self { front_end, estimator, taken_until: Stamp::default(), resumed_at: None }
+        let (taken_until, resumed_at) = (Stamp::default(), None);
+        Self { front_end, estimator, taken_until, resumed_at, last_increment: None, waiting: Vec::new() }
     }
 
     /// The system with a saved map; the front end has its saved state already.
@@ -52,7 +58,7 @@ where
         estimator.filter = EkfSlam::resume(model, params, filter)?;
         estimator.association = estimator.association.numbering_from(next_id);
         let taken_until = Stamp::from_nanoseconds(taken_until);
-        Ok(Self { front_end, estimator, taken_until, resumed_at: Some(taken_until) })
+        Ok(Self { taken_until, resumed_at: Some(taken_until), ..Self::new(front_end, estimator) })
     }
 
     /// Adds a landmark whose place is known.
@@ -62,6 +68,48 @@ where
         landmark: <F::Model as LandmarkModel>::Landmark,
     ) -> Result<(), SlamError> {
         self.estimator.filter.add_anchor(id, landmark)
+    }
+
+    /// Takes a measurement of the pose now, or after the increment that leads beyond it.
+    fn take_or_wait(&mut self, stamp: Stamp, measured: &PoseMeasurement) -> Result<(), String> {
+        let (params, antenna) = self.front_end.external();
+        if !params.is_on() {
+            self.estimator.events.count("measurement_ignored");
+            return Ok(());
+        }
+        let measurement = in_map(measured, params, antenna).map_err(|error| error.to_string())?;
+        if self.last_increment.is_some_and(|last| last < stamp) {
+            self.waiting.push((stamp, measurement));
+            return Ok(());
+        }
+        self.measure(stamp, &measurement, &Pose2::identity())
+    }
+
+    /// Takes the waiting measurements at the end of an increment, less the part of it that comes after them.
+    fn take_waiting(&mut self, end: Stamp, increment: &Pose2<f64>) {
+        let begin = self.last_increment.replace(end).unwrap_or(end);
+        for (stamp, measurement) in std::mem::take(&mut self.waiting) {
+            let share = end.seconds_since(stamp) / end.seconds_since(begin).max(f64::MIN_POSITIVE);
+            let back = Pose2::exp(&(increment.log() * -share.min(1.0)));
+            if let Err(reason) = self.measure(end, &measurement, &back) {
+                self.estimator.events.refuse("record_refused", format!("measured pose of {stamp}: {reason}"));
+            }
+        }
+    }
+
+    /// Corrects by a measurement that was made after the motion `rest` from the pose at `stamp`.
+    fn measure(
+        &mut self,
+        stamp: Stamp,
+        measurement: &MapMeasurement,
+        rest: &Pose2<f64>,
+    ) -> Result<(), String> {
+        let Some((motion, covariance)) = self.front_end.motion_to(stamp, &mut self.estimator)? else {
+            self.estimator.events.count("record_before_start");
+            return Ok(());
+        };
+        let carry = rest.inverse().adjoint();
+        self.estimator.update_moved(measurement, motion.compose(rest), carry * covariance * carry.transpose())
     }
 
     /// All that is needed to go on from here.
@@ -82,7 +130,7 @@ where
     }
     /// How observations find their landmarks.
     pub fn association(&self) -> AssociationRule {
-        self.estimator.association.rule()
+        AssociationRule::of(&self.estimator.association)
     }
     /// Where odometry alone would put the robot.
     pub fn dead_reckoning(&self) -> &Pose2<f64> {
@@ -108,9 +156,18 @@ where
             return Ok(());
         }
         self.taken_until = record.stamp;
-        self.front_end.take(record, &mut self.estimator)
+        match &record.data {
+            RecordData::PoseMeasurement(measured) => self.take_or_wait(record.stamp, measured),
+            RecordData::OdometryIncrement(increment) => {
+                let taken = self.front_end.take(record, &mut self.estimator);
+                self.take_waiting(record.stamp, increment);
+                taken
+            }
+            _ => self.front_end.take(record, &mut self.estimator),
+        }
     }
     fn finish(&mut self) -> Result<(), String> {
+        self.take_waiting(self.taken_until, &Pose2::identity());
         self.front_end.finish(&mut self.estimator)
     }
     fn events(&mut self) -> &mut EventCounts {

@@ -1,4 +1,4 @@
-use std::borrow::Borrow;
+use std::{borrow::Borrow, cell::Cell};
 
 use wayfix_sensor_log::{Record, Stamp};
 
@@ -13,6 +13,8 @@ pub struct RunStep<'a, S> {
     pub record: &'a Record,
     /// The next record.
     pub next: Option<&'a Record>,
+    /// An observer that sets it ends the drive after this record.
+    pub stop: &'a Cell<bool>,
 }
 
 /// Passes records through a system and shows each step to `observe`. Rejects and counts records that go back in time.
@@ -24,6 +26,7 @@ pub fn drive<S: System, R: Borrow<Record>>(
     mut observe: impl FnMut(RunStep<'_, S>),
 ) {
     let mut latest = Stamp::default();
+    let stop = Cell::new(false);
     let mut records = records.into_iter().enumerate().peekable();
     while let Some((index, record)) = records.next() {
         let record = record.borrow();
@@ -37,7 +40,11 @@ pub fn drive<S: System, R: Borrow<Record>>(
         if let Err(reason) = taken {
             system.events().refuse("record_refused", reason);
         }
-        observe(RunStep { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
+        let next = records.peek().map(|(_, next)| next.borrow());
+        observe(RunStep { system, record, next, stop: &stop });
+        if stop.get() {
+            break;
+        }
     }
     if let Err(reason) = system.finish() {
         system.events().refuse("record_refused", reason);

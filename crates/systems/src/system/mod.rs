@@ -6,27 +6,25 @@ mod events;
 mod held_velocity;
 mod known_start;
 mod laser;
-mod motion_statistics;
 mod odometry_delay;
 mod odometry_lag;
 mod overlap;
 mod plausible_increment;
 mod robot_drawing;
-mod stopwatch;
 
 pub use drive::{RunStep, drive};
-pub use estimate_recorder::{EstimateDrawing, EstimateRecorder, EstimateWriter, OTHER_POSES};
+pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
-pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
 pub use plausible_increment::IncrementPlausibilityCheck;
-pub(crate) use robot_drawing::{ellipse, write_pose, write_robot};
-pub use stopwatch::Stopwatch;
+pub(crate) use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
+pub use wayfix_evaluation::terminal::Stopwatch;
+pub use wayfix_slam_ekf::MotionStatistics;
 
 use wayfix_sensor_log::Record;
 

@@ -48,3 +48,34 @@ pub(crate) fn ellipse(
         shape: DrawingShape::Ellipse { center, semi_axes, angle: ellipse.angle },
     })
 }
+
+/// The path in pieces: a message holds the poses since the last one, so that the path of a long log is written once.
+#[derive(Default)]
+pub(crate) struct PathPieces {
+    /// Begins with the end of the last piece.
+    piece: Vec<[f64; 2]>,
+    n_pieces: usize,
+}
+
+/// Poses in a piece.
+const PIECE: usize = 20;
+
+impl PathPieces {
+    /// Takes the next pose, and writes the piece when it is full. Viewers keep the earlier pieces, which have other names.
+    pub(crate) fn push(
+        &mut self,
+        stamp: Stamp,
+        pose: &Pose2<f64>,
+        writer: &mut EstimateWriter,
+    ) -> Result<(), LogError> {
+        self.piece.push([pose.x(), pose.y()]);
+        if self.piece.len() <= PIECE {
+            return Ok(());
+        }
+        let (id, end) = (format!("path {}", self.n_pieces), [pose.x(), pose.y()]);
+        let shape = DrawingShape::Path(std::mem::replace(&mut self.piece, vec![end]));
+        self.n_pieces += 1;
+        let piece = ViewerDrawing { id, color: ROBOT_COLOR, shape };
+        writer.scene_update("/estimate/path", stamp, topics::WORLD_FRAME, &[piece])
+    }
+}

@@ -26,7 +26,7 @@ pub fn summarize(run: &mut TrackRun) -> ReportRun {
     metrics.extend([
         Metric::new("n_frames", run.system.n_frames() as f64, ""),
         Metric::new("n_lost", totals.n_lost as f64, ""),
-        Metric::new("n_without_estimate", totals.n_without_estimate as f64, ""),
+        Metric::new("n_frames_without_estimate", totals.n_frames_without_estimate as f64, ""),
     ]);
     let ms = |time: Duration| 1e3 * time.as_secs_f64();
     let timings = vec![

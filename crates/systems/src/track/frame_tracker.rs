@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    ColorSpace, ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TargetEstimate, Tracker,
+    ColorContourTracker, ColorSpace, CorrelationTracker, HeadTracker, RgbImage, TargetEstimate, Tracker,
     TrackingError,
 };
 
@@ -47,7 +47,7 @@ impl FrameTracker for HeadTracker {
 
 /// A contour tracker and its colour space.
 pub(super) struct ContourFrameTracker {
-    pub(super) tracker: ContourTracker,
+    pub(super) tracker: ColorContourTracker,
     pub(super) space: ColorSpace,
 }
 

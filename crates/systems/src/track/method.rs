@@ -1,7 +1,7 @@
 use clap::ValueEnum;
 use serde::Deserialize;
 use wayfix_visual_tracking::{
-    ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TrackingCues, TrackingError,
+    ColorContourTracker, CorrelationTracker, HeadTracker, RgbImage, TrackingCues, TrackingError,
 };
 
 use super::{FrameTracker, InitialTargetRegion, TrackParams, frame_tracker::ContourFrameTracker};
@@ -65,8 +65,8 @@ impl TrackingMethod {
             Self::ContourShapeOnly => contour.cues = TrackingCues::Shape,
         }
         let tracker = match start {
-            InitialTargetRegion::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
-            InitialTargetRegion::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
+            InitialTargetRegion::Box(bounds) => ColorContourTracker::from_box(picture, bounds, contour)?,
+            InitialTargetRegion::Mask(mask) => ColorContourTracker::from_mask(picture, mask, contour)?,
         };
         Ok(Box::new(ContourFrameTracker { tracker, space: contour.color_space }))
     }

@@ -1,6 +1,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_visual_tracking::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
+use wayfix_visual_tracking::{ColorContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
 
 /// Parameters of `wayfix run track`, independent of the recording.
 ///
@@ -19,7 +19,7 @@ pub struct TrackParams {
     /// The head tracker.
     pub head: HeadTrackerParams,
     /// The contour tracker.
-    pub contour: ContourTrackerParams,
+    pub contour: ColorContourTrackerParams,
 }
 
 impl TrackParams {
@@ -27,7 +27,7 @@ impl TrackParams {
     pub fn as_published() -> Self {
         Self {
             head: HeadTrackerParams::as_published(),
-            contour: ContourTrackerParams::as_published(),
+            contour: ColorContourTrackerParams::as_published(),
             ..Self::default()
         }
     }

@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Log, Record, RecordData, RowProblemKind};
+use wayfix_sensor_log::{Log, RecordData, RowProblemKind};
 
 use super::{TrackRunHistory, TrackSystem, TrackSystemError};
 use crate::system::{RunStep, System, drive};
@@ -18,16 +18,17 @@ pub struct TrackRun {
 pub fn run(
     mut system: TrackSystem,
     log: &mut Log,
-    mut observe: impl FnMut(&TrackSystem, &Record),
+    mut observe: impl FnMut(RunStep<'_, TrackSystem>),
 ) -> Result<TrackRun, TrackSystemError> {
     let mut run_history = TrackRunHistory::default();
     let mut kept = Ok(());
-    drive(&mut system, log.by_ref(), |RunStep { system, record, .. }| {
+    drive(&mut system, log.by_ref(), |step| {
+        let RunStep { system, record, .. } = step;
         // Only image records change the frame.
         if let (Ok(()), RecordData::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = run_history.observe(frame);
         }
-        observe(system, record);
+        observe(step);
     });
     if let Some(failure) = system.take_failure() {
         return Err(failure);

@@ -68,7 +68,7 @@ pub struct TrackFrameResult {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Totals {
     pub(super) n_lost: u64,
-    pub(super) n_without_estimate: u64,
+    pub(super) n_frames_without_estimate: u64,
     pub(super) n_steps: u64,
     pub(super) time: Duration,
     pub(super) longest: Duration,
@@ -148,7 +148,7 @@ impl TrackSystem {
         if let (true, TargetTruth::At(truth)) = (self.has_begun(), self.setup.truth.at(self.next_index)) {
             self.score.add(None, &truth);
         }
-        self.totals.n_without_estimate += 1;
+        self.totals.n_frames_without_estimate += 1;
         self.next_index += 1;
     }
 
@@ -224,8 +224,8 @@ impl TrackSystem {
             TargetTruth::Unknown => {}
         }
         match (lost, truth) {
-            (true, TargetTruth::Absent) => self.events.count("absent_and_lost"),
-            (false, TargetTruth::Absent) => self.events.count("absent_and_tracked"),
+            (true, TargetTruth::Absent) => self.events.count("target_absent_and_reported_lost"),
+            (false, TargetTruth::Absent) => self.events.count("target_absent_but_reported_tracked"),
             _ => {}
         }
         match (self.was_lost, lost) {

@@ -16,7 +16,7 @@ pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
         let successes = run.trials.iter().filter(|trial| trial.succeeded()).count();
         let n_certain = run.trials.iter().filter(|trial| trial.report.steps_to_certainty.is_some()).count();
         metrics.push(Metric::new(format!("{name}_successes"), successes as f64, ""));
-        metrics.push(Metric::new(format!("{name}_n_certain"), n_certain as f64, ""));
+        metrics.push(Metric::new(format!("{name}_n_trials_certain_of_place"), n_certain as f64, ""));
     }
     metrics.extend(saved("steps_to_certainty", greedy, informed, certain));
     metrics.extend(saved("steps", greedy, informed, all));
@@ -42,9 +42,9 @@ fn saved(
     let figures = [
         (format!("greedy_{name}_mean"), mean(&greedy)),
         (format!("informed_{name}_mean"), mean(&informed)),
-        (format!("{name}_saved_mean"), middle),
-        (format!("{name}_saved_low95"), middle - half),
-        (format!("{name}_saved_high95"), middle + half),
+        (format!("{name}_saved_by_informed_mean"), middle),
+        (format!("{name}_saved_by_informed_low95"), middle - half),
+        (format!("{name}_saved_by_informed_high95"), middle + half),
     ];
     figures.map(|(name, value)| Metric::new(name, value, "")).into()
 }

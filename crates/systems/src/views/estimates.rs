@@ -1,7 +1,7 @@
 use anyhow::Result;
 use wayfix_condensation::RgbImage;
 use wayfix_sensor_log::{
-    EncodedImage, ImageOutline, MessageSinks, MessageWriter, Record, RecordData, Stamp, topics,
+    EncodedImage, FoxgloveMessageWriter, ImageOutline, MessageSinks, Record, RecordData, Stamp, topics,
 };
 
 use super::{
@@ -22,7 +22,7 @@ const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 /// Returns an error if the drive cannot be repeated, an image cannot be encoded or a sink fails.
 pub fn draw_drive(run: &ViewsRun, real: &RgbImage, seed: u64, sinks: MessageSinks) -> Result<()> {
     let scene = EncodedImage::jpeg(real.width(), real.height(), real.as_raw(), JPEG_QUALITY)?;
-    let mut drawing = EstimateDrawing { writer: MessageWriter::into_sink(sinks), scene };
+    let mut drawing = EstimateDrawer { writer: FoxgloveMessageWriter::into_sink(sinks), scene };
     let mut failure = None;
     run.system.trial(seed, slowest(&run.trials), |step| {
         if failure.is_none() {
@@ -35,12 +35,12 @@ pub fn draw_drive(run: &ViewsRun, real: &RgbImage, seed: u64, sinks: MessageSink
     }
 }
 
-struct EstimateDrawing {
+struct EstimateDrawer {
     writer: EstimateWriter,
     scene: EncodedImage,
 }
 
-impl EstimateDrawing {
+impl EstimateDrawer {
     fn draw(&mut self, system: &ViewSystem, step: &ViewTrialStep<'_>) -> Result<()> {
         let stamp = Stamp::from_nanoseconds(step.number as u64 * NANOSECONDS_A_MOVE);
         self.writer.record(&Record { stamp, data: RecordData::Image(self.scene.clone()) })?;

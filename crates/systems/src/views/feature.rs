@@ -1,8 +1,8 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_condensation::{
-    DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor, Hist6Descriptor, JoinedDescriptor,
-    MeanVarDescriptor,
+    ColorMeanStdDescriptor, ConcatenatedDescriptor, DominantGrayCriterion, DominantGraysDescriptor,
+    Fft6Descriptor, GlobalDescriptor,
 };
 
 /// Feature measured in a view. [Kasprzak & Szynkiewicz, Sec. 3]
@@ -48,10 +48,10 @@ impl DescriptorKind {
     /// The feature; `dominance` defines the numbers of the histogram.
     pub fn feature(self, dominance: DominantGrayCriterion) -> Box<dyn GlobalDescriptor + Send> {
         match self {
-            Self::MeanVar => Box::new(MeanVarDescriptor),
+            Self::MeanVar => Box::new(ColorMeanStdDescriptor),
             Self::Fft6 => Box::new(Fft6Descriptor),
-            Self::Hist6 => Box::new(Hist6Descriptor { dominance }),
-            Self::Joined => Box::new(JoinedDescriptor::new(
+            Self::Hist6 => Box::new(DominantGraysDescriptor { dominance }),
+            Self::Joined => Box::new(ConcatenatedDescriptor::new(
                 Self::OF_THE_PAPER.into_iter().map(|part| part.feature(dominance)).collect(),
             )),
         }

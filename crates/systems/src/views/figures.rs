@@ -30,20 +30,20 @@ pub fn summarize(run: &ViewsRun) -> ReportRun {
         metrics.push(Metric::new("steps_to_certainty_mean", mean, ""));
     }
     metrics.extend([
-        Metric::new("n_certain", certain.len() as f64, ""),
-        Metric::new("n_states", run.system.views().grid().n_states() as f64, ""),
+        Metric::new("n_trials_certain_of_place", certain.len() as f64, ""),
+        Metric::new("n_places", run.system.views().grid().n_states() as f64, ""),
     ]);
     let n_updates: usize = trials.iter().map(|trial| trial.belief_in_truth.len()).sum();
     let timings = vec![
-        Metric::new("learning_ms", 1e3 * run.learning.as_secs_f64(), "ms"),
-        Metric::new("update_mean_ms", 1e3 * run.driving.as_secs_f64() / n_updates.max(1) as f64, "ms"),
+        Metric::new("learning_time_ms", 1e3 * run.learning.as_secs_f64(), "ms"),
+        Metric::new("update_time_mean_ms", 1e3 * run.driving.as_secs_f64() / n_updates.max(1) as f64, "ms"),
     ];
     let kidnappings: usize = trials.iter().map(|trial| trial.report.kidnappings).sum();
     let events = [
-        ("arrived", successes),
+        ("arrived_at_goal", successes),
         ("arrived_elsewhere", count(&ViewTrial::is_false_arrival)),
         ("arrived_next_to_goal", count(&|trial| trial.is_false_arrival() && is_beside(run, trial))),
-        ("unsure", count(&|trial| trial.report.arrival == NavigationOutcome::Unsure)),
+        ("ended_unsure_of_place", count(&|trial| trial.report.arrival == NavigationOutcome::Unsure)),
         ("kidnapping_detected", kidnappings),
     ];
     let events: BTreeMap<String, u64> =

@@ -30,8 +30,8 @@ impl LightNormalization {
     /// Parameters of the appearance learned for this normalization.
     pub fn appearance(self, params: &ViewsParams) -> &AppearanceLearningParams {
         match self {
-            Self::None | Self::WholeScene => &params.whole_scene_appearance,
-            Self::Online => &params.online_appearance,
+            Self::None | Self::WholeScene => &params.scene_normalized_appearance_learning,
+            Self::Online => &params.light_estimated_appearance_learning,
         }
     }
 

@@ -23,9 +23,9 @@ pub struct ViewsParams {
     /// Parameters of the localizer.
     pub localizer: ViewLocalizerParams,
     /// Appearance for views normalized by the whole scene, or not normalized.
-    pub whole_scene_appearance: AppearanceLearningParams,
+    pub scene_normalized_appearance_learning: AppearanceLearningParams,
     /// Appearance for light that is estimated jointly with the place.
-    pub online_appearance: AppearanceLearningParams,
+    pub light_estimated_appearance_learning: AppearanceLearningParams,
 }
 
 impl Default for ViewsParams {
@@ -34,8 +34,8 @@ impl Default for ViewsParams {
             dominant_gray_criterion: DominantGrayCriterion::default(),
             navigator: NavigatorParams::default(),
             localizer: ViewLocalizerParams::default(),
-            whole_scene_appearance: AppearanceLearningParams::normalized(),
-            online_appearance: AppearanceLearningParams::online(),
+            scene_normalized_appearance_learning: AppearanceLearningParams::normalized(),
+            light_estimated_appearance_learning: AppearanceLearningParams::online(),
         }
     }
 }
@@ -45,7 +45,7 @@ impl ViewsParams {
     pub fn as_published() -> Self {
         Self {
             localizer: ViewLocalizerParams::as_published(),
-            whole_scene_appearance: AppearanceLearningParams::as_published(),
+            scene_normalized_appearance_learning: AppearanceLearningParams::as_published(),
             ..Self::default()
         }
     }

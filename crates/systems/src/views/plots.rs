@@ -18,7 +18,7 @@ pub(super) const GOAL: [u8; 3] = [24, 140, 60];
 pub(super) const BEST: [u8; 3] = [240, 160, 0];
 pub(super) const JPEG_QUALITY: u8 = 85;
 
-/// Plots the learned and the real scene, the belief in the drive that was uncertain for longest, and the convergence of all drives.
+/// Plots the learned and the real scene, the belief in the drive that was uncertain for longest, and the convergence of all drives. [Kasprzak & Szynkiewicz, Fig. 4]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be encoded or drawn.

@@ -1,7 +1,7 @@
 use super::{ViewSystem, ViewsError};
 use wayfix_evaluation::report::Metric;
 
-/// Distinctness of the learned views and similarity of views of one place: the paper's Tables 1 and 2, with our test in place of its
+/// Distinctness of the learned views and similarity of views of one place: [Kasprzak & Szynkiewicz, Tables 1, 2], with our test in place of its
 /// unnamed one ([`Appearance::p_value`](wayfix_condensation::AppearanceModel::p_value)).
 ///
 /// # Errors

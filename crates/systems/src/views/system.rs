@@ -3,9 +3,9 @@ use std::{cell::Cell, sync::Arc};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
-    AppearanceModel, DescriptorTable, DiscreteStateSpace, GridMove, NavigationEnvironment, NavigationOutcome,
-    NavigationReport, Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, ViewGrid,
-    ViewLocalizer,
+    AppearanceModel, DiscreteStateSpace, GridMove, NavigationEnvironment, NavigationOutcome,
+    NavigationReport, Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateDescriptorTable,
+    ViewGrid, ViewLocalizer,
 };
 
 use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams};
@@ -34,7 +34,7 @@ pub struct ViewSystemConfig {
 pub struct ViewSystem {
     views: ViewGrid,
     appearance: Arc<AppearanceModel>,
-    seen: DescriptorTable,
+    seen: StateDescriptorTable,
     navigator: Navigator<PositionGrid>,
     params: ViewsParams,
 }
@@ -114,7 +114,7 @@ impl ViewSystem {
     }
 
     /// The features of every view of the real scene.
-    pub fn seen(&self) -> &DescriptorTable {
+    pub fn seen(&self) -> &StateDescriptorTable {
         &self.seen
     }
 
@@ -164,7 +164,7 @@ impl ViewTrial {
 /// True state of the robot in a trial.
 struct Drive<'a> {
     grid: PositionGrid,
-    seen: &'a DescriptorTable,
+    seen: &'a StateDescriptorTable,
     at: &'a Cell<usize>,
     slip: SlipProbabilities,
     rng: ChaCha8Rng,

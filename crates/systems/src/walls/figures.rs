@@ -9,7 +9,7 @@ use crate::slam::{StampedEstimate, summary};
 pub fn summarize(run: &mut WallRun) -> ReportRun {
     let mut of_map = Vec::new();
     if let Some((_, last)) = run.samples().last() {
-        of_map.push(Metric::new("end_error_m", last.position_error(), "m"));
+        of_map.push(Metric::new("end_position_error_m", last.position_error(), "m"));
     }
     of_map.extend(wall_metrics(&run.wall_nees()));
     summary(run, of_map)
@@ -25,7 +25,7 @@ fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
     let n_within = nees.iter().filter(|nees| **nees <= TWO_SIGMA).count();
     vec![
         Metric::new("n_true_walls_found", nees.len() as f64, ""),
-        Metric::new("walls_within_2_sigma", n_within as f64 / nees.len() as f64, ""),
+        Metric::new("walls_within_2_sigma_share", n_within as f64 / nees.len() as f64, ""),
     ]
 }
 
@@ -58,10 +58,10 @@ pub fn relation_metrics(run: &WallRun, relations: &[PoseRelation]) -> Vec<Metric
         (moved.translation - relation.pose.translation).norm()
     });
     vec![
-        Metric::new("relation_translation_mean_m", translation, "m"),
-        Metric::new("relation_rotation_mean_deg", rotation.to_degrees(), "°"),
-        Metric::new("relation_dead_reckoning_mean_m", reckoned, "m"),
-        Metric::new("n_relations", pairs.len() as f64, ""),
+        Metric::new("pose_relation_translation_error_mean_m", translation, "m"),
+        Metric::new("pose_relation_rotation_error_mean_deg", rotation.to_degrees(), "°"),
+        Metric::new("pose_relation_dead_reckoning_error_mean_m", reckoned, "m"),
+        Metric::new("n_pose_relations", pairs.len() as f64, ""),
     ]
 }
 

@@ -1,33 +1,34 @@
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector2};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
-use wayfix_line_extract::LineExtractor;
+use wayfix_line_extract::{LineExtractor, WallSegment};
 use wayfix_scan_match::ScanMatcher;
 use wayfix_sensor_log::{LaserScan, LogError, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    DriftingPose, DriftingPoseSensor, EkfSlam, MountedSensor, Observation, WallMeasurement, WallSensor,
+    EkfSlam, ExternalParams, MountedSensor, Observation, PoseWithHeadingDrift, SensorWithHeadingDrift,
+    WallMeasurement, WallSensor,
 };
 
 use super::{
-    KeyframeThreshold, WallSlamParams, WallState, drawing,
+    KeyframeThreshold, WallFrontEndState, WallSlamParams, drawing,
     odometry::{Motion, OdometryBetweenScans},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, ChosenRule, FrontEnd, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
-pub type WallModel = DriftingPoseSensor<MountedSensor<WallSensor>>;
+pub type WallModel = SensorWithHeadingDrift<MountedSensor<WallSensor>>;
 
 /// EKF-SLAM with walls.
-pub type WallSystem = SlamSystem<WallFrontEnd>;
+pub type WallSystem = SlamSystem<WallSlamFrontEnd>;
 
 /// Laser scans, matched to keyframes of which walls are extracted.
-pub struct WallFrontEnd {
+pub struct WallSlamFrontEnd {
     pub(super) params: WallSlamParams,
     pub(super) moves_by_velocity: bool,
     extractor: LineExtractor,
@@ -68,14 +69,14 @@ impl WallSystem {
             AssociationRule::Known => AssociationRule::Nn, // walls have no identities
             rule => rule,
         };
-        let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
-        let sensor = DriftingPoseSensor(MountedSensor { sensor: params.sensor, mount: params.mount() });
-        let state = DriftingPose { pose: start, heading_drift: 0.0 };
+        let association = rule.with(params.nearest_neighbour, params.joint_compatibility)?;
+        let sensor = SensorWithHeadingDrift(MountedSensor { sensor: params.sensor, mount: params.mount() });
+        let state = PoseWithHeadingDrift { pose: start, heading_drift: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.heading_drift_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
         let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        let front_end = WallFrontEnd {
+        let front_end = WallSlamFrontEnd {
             extractor: LineExtractor::new(params.line_extraction)?,
             matcher: params.match_scans.then(|| ScanMatcher::new(params.scan_match)).transpose()?,
             last_keyframe: None,
@@ -99,12 +100,15 @@ impl WallSystem {
     }
 }
 
+/// Half the width of a search band, standard deviations. [Andrade-Cetto 2005, Fig. 1]
+const BAND_SIGMAS: f64 = 2.0;
+
 /// The estimator of this front end.
 pub(super) type Walls = SlamEstimator<WallModel>;
 
-impl FrontEnd for WallFrontEnd {
+impl FrontEnd for WallSlamFrontEnd {
     type Model = WallModel;
-    type State = WallState;
+    type State = WallFrontEndState;
 
     fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
         match &record.data {
@@ -146,6 +150,20 @@ impl FrontEnd for WallFrontEnd {
         self.waiting.front().map_or(taken_until, before)
     }
 
+    fn external(&self) -> (&ExternalParams, Vector2<f64>) {
+        (&self.params.external, self.params.antenna.into())
+    }
+
+    /// The filter stays at the last keyframe.
+    fn motion_to(&mut self, stamp: Stamp, estimator: &mut Walls) -> Result<Option<MotionEstimate>, String> {
+        if self.moves_by_velocity {
+            self.advance_to(stamp, estimator);
+        }
+        let drift_variance = estimator.filter.robot_covariance().m44;
+        let covariance = self.relative_motion.total_covariance(drift_variance);
+        Ok(self.odometry.has_started().then_some((self.relative_motion.motion, covariance)))
+    }
+
     fn draw_map(
         filter: &EkfSlam<WallModel>,
         stamp: Stamp,
@@ -154,12 +172,12 @@ impl FrontEnd for WallFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn state(&self) -> WallState {
-        WallState::of(self)
+    fn state(&self) -> WallFrontEndState {
+        WallFrontEndState::of(self)
     }
 }
 
-impl WallFrontEnd {
+impl WallSlamFrontEnd {
     /// Where the laser is on the robot.
     fn mount(&self) -> Pose2<f64> {
         self.params.mount()
@@ -265,8 +283,9 @@ impl WallFrontEnd {
                 estimator.events.count("scan_skipped");
                 (0.0, 0)
             } else {
-                let observations = self.walls_in(&scan)?;
+                let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
                 self.predict_to_scan(estimator)?;
+                let observations = self.walls_among(&found.segments, &scan.laser, estimator);
                 self.last_keyframe = Some(KeyframeScan { scan, cloud });
                 self.laser_heading = Some(0.0);
                 nis(&estimator.update(&observations, |wall| {
@@ -313,14 +332,31 @@ impl WallFrontEnd {
         estimator.add_stamped_estimate(stamp, state.pose, covariance, nis);
     }
 
-    /// The walls of a scan that are long enough to be walls, as the laser would see them from where the model has it.
-    fn walls_in(&mut self, scan: &PlacedScan) -> Result<Vec<Observation<WallMeasurement>>, String> {
-        let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
-        let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
-        let seen = long.map(WallMeasurement::from);
-        let moved = self.mount().inverse().compose(&scan.laser);
-        let as_seen =
-            |seen: WallMeasurement| if scan.laser == self.mount() { seen } else { seen.transformed(&moved) };
-        Ok(seen.map(|seen| Observation { label: None, measurement: as_seen(seen) }).collect())
+    /// The segments that are long enough to be walls, or lie in the search band of an expected wall, as the laser would see them from where the
+    /// model has it.
+    fn walls_among(
+        &self,
+        segments: &[WallSegment],
+        laser: &Pose2<f64>,
+        estimator: &mut Walls,
+    ) -> Vec<Observation<WallMeasurement>> {
+        let moved = self.mount().inverse().compose(laser);
+        let expected = self.params.expected_walls.then(|| estimator.filter.expected_landmarks());
+        let mut found = BTreeSet::new();
+        let mut observations = Vec::with_capacity(segments.len());
+        for segment in segments {
+            let seen = WallMeasurement::from(segment);
+            let measurement = if *laser == self.mount() { seen } else { seen.transformed(&moved) };
+            let wall = expected.as_ref().and_then(|expected| expected.find(&measurement, BAND_SIGMAS));
+            found.extend(wall);
+            if wall.is_some() || segment.length() >= self.params.min_wall_length {
+                observations.push(Observation { label: None, measurement });
+            }
+        }
+        if let Some(expected) = expected {
+            estimator.events.add("wall_expected", expected.len() as u64);
+            estimator.events.add("wall_in_search_band", found.len() as u64);
+        }
+        observations
     }
 }

@@ -1,15 +1,13 @@
 use nalgebra::{DMatrix, Vector1};
 use wayfix_scan_match::{InitialGuess, ScanPointCloud};
+use wayfix_slam_ekf::HeadingDriftSensor;
 
-use super::{
-    front_end::{WallFrontEnd, Walls},
-    relative_motion::DriftMeasurement,
-};
+use super::front_end::{WallSlamFrontEnd, Walls};
 
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
 
-impl WallFrontEnd {
+impl WallSlamFrontEnd {
     /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the heading of
     /// the match alone, relative to the keyframe.
     pub(super) fn match_to_keyframe(&mut self, cloud: &ScanPointCloud, estimator: &mut Walls) -> Option<f64> {
@@ -45,7 +43,7 @@ impl WallFrontEnd {
 fn correct_drift((change, variance): (f64, f64), estimator: &mut Walls) -> f64 {
     let before = estimator.filter.robot().heading_drift;
     let measured = Vector1::new(before + change);
-    if let Ok(innovation) = estimator.filter.update_robot(&DriftMeasurement(variance), &measured) {
+    if let Ok(innovation) = estimator.filter.update_robot(&HeadingDriftSensor(variance), &measured) {
         let jacobian = DMatrix::from_row_slice(1, 4, &[0.0, 0.0, 0.0, 1.0]);
         let covariance = DMatrix::from_element(1, 1, innovation.covariance[(0, 0)]);
         estimator.record_robot(&jacobian, &covariance);

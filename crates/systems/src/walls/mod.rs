@@ -14,10 +14,10 @@ mod state;
 mod truth;
 
 pub use figures::{relation_metrics, summarize};
-pub use front_end::{WallFrontEnd, WallModel, WallSystem};
+pub use front_end::{WallModel, WallSlamFrontEnd, WallSystem};
 pub use odometry::OdometryBetweenScans;
 pub use params::{KeyframeThreshold, OdometryNoisePerScan, WallSlamParams};
 pub use plots::plots;
 pub use relative_motion::RelativeMotion;
 pub use run::{WallRun, run, run_on};
-pub use state::{SavedScan, SavedWallMap, WallState};
+pub use state::{SavedScan, SavedWallMap, WallFrontEndState};

@@ -5,8 +5,9 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_scan_match::ScanMatchParams;
 use wayfix_slam_ekf::{
-    JointCompatibility, JointCompatibilityParams, LandmarkConfirmationParams, LinearizationPoint,
-    NearestNeighbour, NearestNeighbourParams, OdometryMotion, SlamError, SlamParams, WallSensor,
+    AnchorParams, ExternalParams, JointCompatibility, JointCompatibilityParams, LandmarkConfirmationParams,
+    LinearizationPoint, NearestNeighbour, NearestNeighbourParams, OdometryMotion, SlamError, SlamParams,
+    WallSensor,
 };
 
 use crate::{
@@ -38,6 +39,13 @@ pub struct WallSlamParams {
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
+    /// Walls that are known before the run, by their ends.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub anchors: Vec<AnchorParams<[[f64; 2]; 2]>>,
+    /// Sensors of the pose that do not use the map.
+    pub external: ExternalParams,
+    /// The antenna whose positions the log has, in the robot frame, m.
+    pub antenna: [f64; 2],
     /// Which scans are looked at.
     pub keyframes: KeyframeThreshold,
     /// What odometry and scans disagree by.
@@ -50,6 +58,8 @@ pub struct WallSlamParams {
     pub line_extraction: LineExtractionParams,
     /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
     pub min_wall_length: f64,
+    /// Whether a shorter piece corrects too if it lies within two standard deviations of a wall that the map expects there.
+    pub expected_walls: bool,
     /// How walls are seen.
     pub sensor: WallSensor,
     /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
@@ -113,12 +123,16 @@ impl Default for WallSlamParams {
             start_pose: None,
             laser_pose: None,
             n_anchors: 0,
+            anchors: Vec::new(),
+            external: ExternalParams::default(),
+            antenna: [0.0; 2],
             keyframes: KeyframeThreshold::default(),
             odometry_noise_per_scan: OdometryNoisePerScan::default(),
             match_scans: true,
             scan_match: ScanMatchParams::default(),
             line_extraction: LineExtractionParams::default(),
             min_wall_length: 1.0,
+            expected_walls: false,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
             velocity_timeout: VELOCITY_TIMEOUT,
@@ -134,7 +148,7 @@ impl Default for WallSlamParams {
                 linearization_point: LinearizationPoint::FirstEstimates,
                 confirmation: LandmarkConfirmationParams {
                     min_detections: 3,
-                    max_missed: Some(10),
+                    max_consecutive_misses: Some(10),
                     ..LandmarkConfirmationParams::default()
                 },
                 ..SlamParams::default()
@@ -203,11 +217,11 @@ impl WallSlamParams {
             let (name, value) = ("odometry_delay", self.odometry_delay);
             return Err(SlamError::Parameter { name, value, range: "from -60 to 60" }.into());
         }
-        if let Some(value) = self.laser_pose.iter().chain(&self.start_pose).flatten().find(|v| !v.is_finite())
-        {
+        let places = self.laser_pose.iter().chain(&self.start_pose).flatten().chain(&self.antenna);
+        if let Some(value) = places.copied().find(|value| !value.is_finite()) {
             return Err(SlamError::Parameter {
-                name: "laser_pose or start_pose",
-                value: *value,
+                name: "laser_pose, start_pose or antenna",
+                value,
                 range: "finite",
             }
             .into());

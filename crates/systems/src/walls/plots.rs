@@ -4,7 +4,7 @@ use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 use super::WallRun;
 use crate::slam::plots_with;
 
-/// Path and walls, errors with their 3σ bands and NEES where there is truth, and step times.
+/// Path and walls, errors with their 3σ bands and NEES where there is truth, and step times. [Andrade-Cetto 2005, Fig. 7]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.

@@ -1,8 +1,8 @@
-use nalgebra::{Matrix1, Matrix3, Matrix4, Vector1, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 use serde::{Deserialize, Serialize};
-use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
+use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2};
 use wayfix_scan_match::ScanAlignment;
-use wayfix_slam_ekf::{DriftingPose, OdometryMotion};
+use wayfix_slam_ekf::{OdometryMotion, PoseWithHeadingDrift};
 
 use super::OdometryNoisePerScan;
 
@@ -139,36 +139,21 @@ const NOTHING: f64 = 1.0;
 
 /// The motion model of a [`RelativeMotion`]: noise and derivative come with the motion.
 impl MotionModel for RelativeMotion {
-    type State = DriftingPose;
+    type State = PoseWithHeadingDrift;
     type Control = Pose2<f64>;
 
-    fn propagate(&self, state: &DriftingPose, motion: &Pose2<f64>) -> DriftingPose {
-        DriftingPose { pose: state.pose.compose(motion), ..*state }
+    fn propagate(&self, state: &PoseWithHeadingDrift, motion: &Pose2<f64>) -> PoseWithHeadingDrift {
+        PoseWithHeadingDrift { pose: state.pose.compose(motion), ..*state }
     }
-    fn jacobian(&self, _: &DriftingPose, motion: &Pose2<f64>) -> Matrix4<f64> {
+    fn jacobian(&self, _: &PoseWithHeadingDrift, motion: &Pose2<f64>) -> Matrix4<f64> {
         let mut jacobian = motion.inverse().adjoint().to_homogeneous();
         jacobian.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.drift_jacobian);
         jacobian
     }
-    fn noise(&self, _: &DriftingPose, _: &Pose2<f64>) -> Matrix4<f64> {
+    fn noise(&self, _: &PoseWithHeadingDrift, _: &Pose2<f64>) -> Matrix4<f64> {
         let mut noise = self.covariance.to_homogeneous();
         noise.m44 = 0.0;
         noise
-    }
-}
-
-/// A look at the drift, with its variance, rad²/m².
-pub(super) struct DriftMeasurement(pub(super) f64);
-
-impl SensorModel for DriftMeasurement {
-    type State = DriftingPose;
-    type Measurement = Vector1<f64>;
-
-    fn expected(&self, robot: &DriftingPose) -> Vector1<f64> {
-        Vector1::new(robot.heading_drift)
-    }
-    fn noise(&self, _: &DriftingPose) -> Matrix1<f64> {
-        Matrix1::new(self.0)
     }
 }
 

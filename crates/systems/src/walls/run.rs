@@ -1,10 +1,10 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_evaluation::errors::{ReferencePath, TrajectorySample, TruePositions};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{SavedWallMap, WallFrontEnd, WallSlamParams, WallSystem, truth};
+use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
 use crate::{
     slam::{
         AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_reference, warn_of_start,
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// A log of scans that went through EKF-SLAM with walls.
-pub type WallRun = SlamRun<WallFrontEnd, Vec<TrueWall>>;
+pub type WallRun = SlamRun<WallSlamFrontEnd, Vec<TrueWall>>;
 
 /// Runs EKF-SLAM with walls over the records of a log and shows each step to `observe`.
 ///
@@ -54,6 +54,10 @@ pub fn run(
     {
         system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
     }
+    let between = |[start, end]: [[f64; 2]; 2]| {
+        truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
+    };
+    system.estimator.filter.add_anchors(&params.anchors, None, between)?;
     drive_through(system, track, true_walls, records, observe)
 }
 
@@ -98,7 +102,7 @@ fn drive_through(
     let seen_turns = run.system.seen_turns().to_vec();
     warn_of_lag(run.events(), &dead_reckoning, &seen_turns, delay);
     let samples = run.samples();
-    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
+    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
     };
     if !samples.is_empty() && samples.iter().all(is_odometry) {

@@ -2,10 +2,10 @@ use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::LaserScan;
-use wayfix_slam_ekf::{DriftingPose, SlamError, Wall};
+use wayfix_slam_ekf::{PoseWithHeadingDrift, SlamError, Wall};
 
 use super::{
-    WallFrontEnd, WallSlamParams, WallSystem,
+    WallSlamFrontEnd, WallSlamParams, WallSystem,
     odometry::OdometryBetweenScans,
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan},
@@ -13,11 +13,11 @@ use super::{
 use crate::slam::{AssociationRule, FrontEndState, SavedMapError, SlamState, check_association};
 
 /// A map of walls.
-pub type SavedWallMap = SlamState<DriftingPose, Wall, WallState>;
+pub type SavedWallMap = SlamState<PoseWithHeadingDrift, Wall, WallFrontEndState>;
 
-/// All that a [`WallFrontEnd`] remembers between two records.
+/// All that a [`WallSlamFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WallState {
+pub struct WallFrontEndState {
     /// Where the laser is on the robot.
     pub laser: Option<[f64; 3]>,
     /// Where the log placed it last, if the parameters do not.
@@ -51,13 +51,13 @@ pub struct SavedScan {
     pub beam_step: Option<Pose2<f64>>,
 }
 
-impl FrontEndState for WallState {
+impl FrontEndState for WallFrontEndState {
     const ROBOT: (&str, usize) = ("planar pose with heading drift", 4);
     const LANDMARK: (&str, usize) = ("wall in the plane", 2);
 }
 
-impl WallState {
-    pub(super) fn of(front_end: &WallFrontEnd) -> Self {
+impl WallFrontEndState {
+    pub(super) fn of(front_end: &WallSlamFrontEnd) -> Self {
         Self {
             laser: front_end.params.laser_pose,
             current_laser_mount: front_end.current_laser_mount,

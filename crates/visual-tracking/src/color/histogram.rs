@@ -66,7 +66,7 @@ impl ColorHistogram {
     }
 
     /// Share of this histogram, the candidate's, that is in the model's: $`\sum_i \min(C_i, M_i) / \sum_i C_i`$, from 0 to 1; 0 without
-    /// pixels. [Swain & Ballard 1991; Andrade-Cetto & Sanfeliu, Eq. 28]
+    /// pixels. [Andrade-Cetto 2005, Eq. 28; Swain & Ballard 1991]
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if they differ in the number of bins.
     pub fn intersection(&self, model: &Self) -> Result<f64, TrackingError> {
@@ -83,7 +83,7 @@ impl ColorHistogram {
         Ok(if total > 0.0 { shared.iter().sum::<f64>() / total } else { 0.0 })
     }
 
-    /// Adapts a model to a candidate: $`M ← (1 - a) M + a C`$. [Andrade-Cetto & Sanfeliu, Eq. 29]
+    /// Adapts a model to a candidate: $`M ← (1 - a) M + a C`$. [Andrade-Cetto 2005, Eq. 29]
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] as [`intersection`](Self::intersection), or [`TrackingError::Parameter`] if `rate` is not between 0

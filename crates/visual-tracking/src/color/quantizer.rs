@@ -4,7 +4,7 @@ use crate::error::checked;
 
 /// Divides a colour space into bins: every axis into equal parts, bin $`\lfloor x n \rfloor`$ of $`n`$, the upper end in the last one.
 ///
-/// Both bounds of [Andrade-Cetto & Sanfeliu, Sec. 3.3] cannot hold at once; this is the one by which they segment.
+/// Both bounds of [Andrade-Cetto 2005, Sec. 3.3] cannot hold at once; this is the one by which they segment.
 ///
 /// ```
 /// use wayfix_visual_tracking::{ColorQuantizer, ColorSpace};

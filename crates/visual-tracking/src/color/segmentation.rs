@@ -5,7 +5,7 @@ use crate::error::check_size;
 use crate::{PixelMask, TrackingError};
 
 impl ColorBinImage {
-    /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto & Sanfeliu, Sec. 3.3]
+    /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto 2005, Sec. 3.3]
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if the set has another number of bins.

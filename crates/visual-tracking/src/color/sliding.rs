@@ -3,7 +3,7 @@ use std::ops::Range;
 use super::{ColorBinImage, ColorHistogram, RowSpans};
 
 /// The histogram of a shape that moves over an image: each move counts only the pixels in which the two positions differ.
-/// [Birchfield 1998; Andrade-Cetto & Sanfeliu, Sec. 3.2]
+/// [Birchfield 1998; Andrade-Cetto 2005, Sec. 3.2]
 ///
 /// Parts of the shape outside the image contribute no pixels.
 /// ```

@@ -28,7 +28,7 @@ pub enum ColorSpace {
     /// Luma and colour differences: $`Y = 0.299 R + 0.587 G + 0.114 B`$, $`U ∝ B - Y`$, $`V ∝ R - Y`$, the last two with 0.5 for grey.
     /// [ITU-R BT.601]
     Yuv,
-    /// $`(B - G, G - R, R + G + B)`$, the first two with 0.5 for grey. [Andrade-Cetto & Sanfeliu, Sec. 3.2]
+    /// $`(B - G, G - R, R + G + B)`$, the first two with 0.5 for grey. [Andrade-Cetto 2005, Sec. 3.2]
     #[default]
     Opponent,
     /// A space of the user's own.

@@ -5,8 +5,10 @@ use super::hypotheses::each::map_each;
 use super::hypotheses::samples::Samples;
 use super::scene::Scene;
 use super::search::in_other_light;
-use super::{ContourTracker, TrackingCues};
-use crate::{ColorBinSet, ColorCloud, ColorState, Outline, PixelMask, RgbImage, TrackStatus, TrackingError};
+use super::{ColorContourTracker, TrackingCues};
+use crate::{
+    ColorBinSet, ColorCloud, ColorDistributionState, Outline, PixelMask, RgbImage, TrackStatus, TrackingError,
+};
 
 /// Result of a search for the target, and the data to learn from it.
 pub(super) struct Found {
@@ -20,7 +22,7 @@ pub(super) struct Found {
     pub(super) samples: Samples,
 }
 
-impl ContourTracker {
+impl ColorContourTracker {
     /// Round the place where the target is expected.
     pub(super) fn follow<R: Rng + ?Sized>(
         &self,
@@ -65,8 +67,8 @@ impl ContourTracker {
         }
         let scene = Scene::whole(&self.params, &self.quantizer, picture, &self.reference)?;
         let states = self.hypotheses(rng)?;
-        let stride = states.len().div_ceil(self.params.n_search_samples);
-        let mut states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
+        let stride = states.len().div_ceil(self.params.n_search_color_hypotheses);
+        let mut states: Vec<ColorDistributionState> = states.into_iter().step_by(stride).collect();
         if self.params.adapts_colors {
             states.extend(in_other_light(self.params.color_space, &self.reference.colors));
         }
@@ -86,7 +88,7 @@ impl ContourTracker {
         &self,
         scene: &Scene<'_>,
         candidate: Candidate,
-        state: &ColorState,
+        state: &ColorDistributionState,
         set: &ColorBinSet,
         mask: &PixelMask,
         samples: Samples,
@@ -105,11 +107,11 @@ impl ContourTracker {
         Ok(Found { candidate, quality, regrown, outline, cloud, samples })
     }
 
-    fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorState>, TrackingError> {
+    fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorDistributionState>, TrackingError> {
         if self.params.adapts_colors {
             return self.samples.predicted(&self.dynamics, &self.params, rng);
         }
-        Ok(vec![ColorState::at_rest(&self.reference.colors)])
+        Ok(vec![ColorDistributionState::at_rest(&self.reference.colors)])
     }
 }
 

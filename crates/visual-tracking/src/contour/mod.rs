@@ -15,5 +15,5 @@ mod start;
 mod tracker;
 
 pub use hypotheses::agreement::ColorHypothesisAgreement;
-pub use params::{ContourTrackerParams, TrackingCues};
-pub use tracker::ContourTracker;
+pub use params::{ColorContourTrackerParams, TrackingCues};
+pub use tracker::ColorContourTracker;

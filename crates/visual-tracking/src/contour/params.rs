@@ -1,7 +1,7 @@
 use crate::error::{checked, probability};
 use crate::{ColorSpace, ColorStateVector, SnakeParams, TrackingError};
 
-/// Cues that a [`ContourTracker`](crate::ContourTracker) uses.
+/// Cues that a [`ColorContourTracker`](crate::ColorContourTracker) uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -16,7 +16,7 @@ pub enum TrackingCues {
     Shape,
 }
 
-/// Parameters of a [`ContourTracker`](crate::ContourTracker). The defaults are for images of about 320 × 240 pixels at 10 to 60 Hz and are not
+/// Parameters of a [`ColorContourTracker`](crate::ColorContourTracker). The defaults are for images of about 320 × 240 pixels at 10 to 60 Hz and are not
 /// tuned to any one recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -25,7 +25,7 @@ pub enum TrackingCues {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct ContourTrackerParams {
+pub struct ColorContourTrackerParams {
     /// Which cues are used. Default both.
     pub cues: TrackingCues,
     /// Whether the colours adapt; otherwise they stay fixed at the start values. Default true.
@@ -51,18 +51,18 @@ pub struct ContourTrackerParams {
     /// contour is kept. 0 drops them, as in the paper. Default 0.8.
     pub previous_colors_weight: f64,
     /// Most points in a colour set. Default 512.
-    pub max_colors: usize,
+    pub max_color_points: usize,
     /// $`μ_1, μ_2, μ_3`$: weights of the affine similarity, the area and the Euler number. Default 1, 1, 0.5.
-    pub quality_weights: [f64; 3],
+    pub agreement_weights: [f64; 3],
     /// $`σ`$ of the weights. Default 0.15.
-    pub quality_sigma: f64,
+    pub agreement_sigma: f64,
     /// $`μ`$ of the predicted area: share of its last change that is extrapolated. Default 0.5.
-    pub area_extrapolation: f64,
+    pub extrapolated_area_change_share: f64,
     /// Weight of the mean area of the last seconds in the predicted area, against gradual shrinking or growing of the contour; 0 as in the
     /// paper. Default 0.3.
     pub mean_area_weight: f64,
     /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
-    pub euler_number_range: f64,
+    pub max_euler_number_deviation: f64,
     /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
     pub morphology_radius: usize,
     /// Parameters of the snake fit.
@@ -70,16 +70,16 @@ pub struct ContourTrackerParams {
     /// Distance from the segmented boundary within which the final contour searches for an image edge, in pixels; 0 disables it. Default 2.
     pub edge_search_distance: usize,
     /// The change of colour over two pixels that is an edge, in grey values (root of the sum of squares over the channels). Default 20.
-    pub edge_contrast: f64,
+    pub min_edge_contrast: f64,
     /// Below this quality the target is lost. Default 0.5.
-    pub lost_below: f64,
+    pub lost_below_quality: f64,
     /// From this quality on, times the likeness of the colours, it is found again. Default 0.75.
-    pub found_above: f64,
+    pub found_above_quality: f64,
     /// Number of colour hypotheses for a search in the whole image, in addition to those of the light intensity. Default 12.
-    pub n_search_samples: usize,
+    pub n_search_color_hypotheses: usize,
 }
 
-impl Default for ContourTrackerParams {
+impl Default for ColorContourTrackerParams {
     fn default() -> Self {
         Self {
             cues: TrackingCues::default(),
@@ -92,31 +92,31 @@ impl Default for ContourTrackerParams {
             color_state_noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
             min_target_to_background_ratio: 1.0,
             previous_colors_weight: 0.8,
-            max_colors: 512,
-            quality_weights: [1.0, 1.0, 0.5],
-            quality_sigma: 0.15,
-            area_extrapolation: 0.5,
+            max_color_points: 512,
+            agreement_weights: [1.0, 1.0, 0.5],
+            agreement_sigma: 0.15,
+            extrapolated_area_change_share: 0.5,
             mean_area_weight: 0.3,
-            euler_number_range: 10.0,
+            max_euler_number_deviation: 10.0,
             morphology_radius: 1,
             snake: SnakeParams::default(),
             edge_search_distance: 2,
-            edge_contrast: 20.0,
-            lost_below: 0.5,
-            found_above: 0.75,
-            n_search_samples: 12,
+            min_edge_contrast: 20.0,
+            lost_below_quality: 0.5,
+            found_above_quality: 0.75,
+            n_search_color_hypotheses: 12,
         }
     }
 }
 
-impl ContourTrackerParams {
+impl ColorContourTrackerParams {
     /// The published method: no background model, no memory of colours and areas, and samples drawn from samples only, in bins as
     /// large as the dynamics and a hundred samples can fill.
     pub fn as_published() -> Self {
         Self {
             min_target_to_background_ratio: 0.0,
             previous_colors_weight: 0.0,
-            area_extrapolation: 1.0,
+            extrapolated_area_change_share: 1.0,
             mean_area_weight: 0.0,
             share_from_last_measurement: 0.0,
             color_bins: [16; 3],
@@ -131,32 +131,32 @@ impl ContourTrackerParams {
             checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not beyond measure")
         };
         count("n_samples", self.n_samples, 1_000_000)?;
-        count("max_colors", self.max_colors, 1_000_000)?;
-        count("n_search_samples", self.n_search_samples, 1_000_000)?;
+        count("max_color_points", self.max_color_points, 1_000_000)?;
+        count("n_search_color_hypotheses", self.n_search_color_hypotheses, 1_000_000)?;
         for (what, value) in [
             ("share_from_last_measurement", self.share_from_last_measurement),
             ("previous_colors_weight", self.previous_colors_weight),
             ("mean_area_weight", self.mean_area_weight),
-            ("lost_below", self.lost_below),
-            ("found_above", self.found_above),
+            ("lost_below_quality", self.lost_below_quality),
+            ("found_above_quality", self.found_above_quality),
         ] {
             probability(what, value)?;
         }
         for (what, value) in [
             ("min_target_to_background_ratio", self.min_target_to_background_ratio),
-            ("edge_contrast", self.edge_contrast),
-            ("area_extrapolation", self.area_extrapolation),
+            ("min_edge_contrast", self.min_edge_contrast),
+            ("extrapolated_area_change_share", self.extrapolated_area_change_share),
         ] {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }
         for (what, value) in [
-            ("quality_sigma", self.quality_sigma),
-            ("euler_number_range", self.euler_number_range),
-            ("sum of mu", self.quality_weights.iter().sum()),
+            ("agreement_sigma", self.agreement_sigma),
+            ("max_euler_number_deviation", self.max_euler_number_deviation),
+            ("sum of mu", self.agreement_weights.iter().sum()),
         ] {
             checked(what, value, value.is_finite() && value > 0.0, "finite, positive")?;
         }
-        for value in self.quality_weights {
+        for value in self.agreement_weights {
             checked("mu", value, value >= 0.0, "not negative")?;
         }
         for (what, radius) in [

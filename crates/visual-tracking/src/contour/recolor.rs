@@ -31,7 +31,7 @@ impl Scene<'_> {
             plain || (shares[i] > self.background[i] && (is_open || near.contains(bin)))
         };
         let colors = self.colors_in(&inside).filter(|(bin, _)| is_target(*bin)).map(|(_, color)| color);
-        match ColorCloud::from_colors(colors, self.params.max_colors) {
+        match ColorCloud::from_colors(colors, self.params.max_color_points) {
             Ok(cloud) if cloud.n_pixels() >= n_expected => Ok(Some(cloud)),
             Ok(_) | Err(TrackingError::Empty { .. }) => Ok(None),
             Err(error) => Err(error),

@@ -1,6 +1,6 @@
 use super::{ColorHypothesisAgreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::StructuringElement;
-use crate::{ColorEdges, PixelMask, SnakeParams, TrackingError};
+use crate::{ColorEdgeSearch, PixelMask, SnakeParams, TrackingError};
 
 /// Overlap of contour and segmentation from which on both count as consistent.
 pub(super) const COVERED: f64 = 0.7;
@@ -18,8 +18,8 @@ impl Candidate {
         }
         let band =
             mask.boundary().dilated(StructuringElement::Square { radius: params.edge_search_distance });
-        let edges =
-            ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
+        let edges = ColorEdgeSearch::new(scene.picture, params.min_edge_contrast)
+            .within(&band, scene.region.rect.corner());
         // The snake is where it belongs but for the width of the band.
         let near = SnakeParams { search_distance: 0.0, ..params.snake };
         let snake = &scene.reference.snake;

@@ -36,7 +36,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
-    use crate::{ContourTracker, PixelMask, RgbImage, Tracker};
+    use crate::{ColorContourTracker, PixelMask, RgbImage, Tracker};
 
     const SIZE: (usize, usize) = (140, 110);
 
@@ -56,7 +56,7 @@ mod tests {
                 .expect("3 bytes a pixel");
         let mask = |f: &dyn Fn(usize, usize) -> bool| PixelMask::from_fn(SIZE.0, SIZE.1, f).expect("size");
         let mut tracker =
-            ContourTracker::from_mask(&picture, &mask(&start), Default::default()).expect("a target");
+            ColorContourTracker::from_mask(&picture, &mask(&start), Default::default()).expect("a target");
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         for _ in 0..3 {
             tracker.track(&picture, &mut rng).expect("the size of the first");

@@ -1,12 +1,13 @@
-use super::{ContourTrackerParams, reference::Reference, region::Region};
+use super::{ColorContourTrackerParams, reference::Reference, region::Region};
 use crate::StructuringElement;
 use crate::{
-    AffineMap, ColorBinSet, ColorQuantizer, ColorState, PixelConnectivity, PixelMask, RgbImage, TrackingError,
+    AffineMap, ColorBinSet, ColorDistributionState, ColorQuantizer, PixelConnectivity, PixelMask, RgbImage,
+    TrackingError,
 };
 
 /// Data shared by all hypotheses about one image.
 pub(super) struct Scene<'a> {
-    pub(super) params: &'a ContourTrackerParams,
+    pub(super) params: &'a ColorContourTrackerParams,
     pub(super) quantizer: &'a ColorQuantizer,
     pub(super) picture: &'a RgbImage,
     pub(super) reference: &'a Reference,
@@ -29,7 +30,7 @@ pub(super) const LEAST_PIXELS: usize = 4;
 impl<'a> Scene<'a> {
     /// The region around the expected target; `None` if that is outside the image.
     pub(super) fn around_target(
-        params: &'a ContourTrackerParams,
+        params: &'a ColorContourTrackerParams,
         quantizer: &'a ColorQuantizer,
         picture: &'a RgbImage,
         reference: &'a Reference,
@@ -46,7 +47,8 @@ impl<'a> Scene<'a> {
             .dilated(StructuringElement::Square { radius: (0.25 * radius).max(LEAST_MARGIN / 2.0) as usize });
         let mut background = region.shares(&near.not());
         background.iter_mut().for_each(|share| *share *= params.min_target_to_background_ratio as f32);
-        let expected_area = reference.expected_area(params.area_extrapolation, params.mean_area_weight);
+        let expected_area =
+            reference.expected_area(params.extrapolated_area_change_share, params.mean_area_weight);
         Ok(Some(Self {
             params,
             quantizer,
@@ -61,7 +63,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The target's bins under a hypothesis: those that contain colours, more of them than the background.
-    pub(super) fn bin_set(&self, state: &ColorState) -> ColorBinSet {
+    pub(super) fn bin_set(&self, state: &ColorDistributionState) -> ColorBinSet {
         let warp = state.warp_from(&self.reference.colors);
         let total = self.reference.cloud.n_pixels() as f32;
         let warped = self.reference.cloud.warped(&warp);

@@ -1,9 +1,11 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::scene::{LEAST_PIXELS, Scene};
-use super::{ContourTrackerParams, hypotheses::candidate::Candidate, reference::Reference, region::Region};
+use super::{
+    ColorContourTrackerParams, hypotheses::candidate::Candidate, reference::Reference, region::Region,
+};
 use crate::{
-    AffineMap, AffineSnake, ColorQuantizer, ColorSpace, ColorState, PixelConnectivity, PixelMask,
+    AffineMap, AffineSnake, ColorDistributionState, ColorQuantizer, ColorSpace, PixelConnectivity, PixelMask,
     PrincipalColors, RgbImage, TrackingError,
 };
 
@@ -29,7 +31,7 @@ pub(super) struct BlobCandidate {
 impl<'a> Scene<'a> {
     /// The whole image, without a prior position. Colours frequent in all of it count as background.
     pub(super) fn whole(
-        params: &'a ContourTrackerParams,
+        params: &'a ColorContourTrackerParams,
         quantizer: &'a ColorQuantizer,
         picture: &'a RgbImage,
         reference: &'a Reference,
@@ -52,7 +54,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The best blob of a hypothesis, anywhere, by its score times the similarity of its colours.
-    pub(super) fn find(&self, state: &ColorState) -> Option<BlobCandidate> {
+    pub(super) fn find(&self, state: &ColorDistributionState) -> Option<BlobCandidate> {
         let blobs = self.segment(&self.bin_set(state)).blobs(PixelConnectivity::Eight);
         let ratio = |area: usize| area as f64 / self.expected_area;
         let mut near: Vec<(usize, f64)> = blobs
@@ -126,11 +128,11 @@ pub(super) fn black(space: ColorSpace) -> Option<Vector3<f64>> {
 
 /// The colours of a reference in light of other strengths, from a third to three times as strong. Empty in a space in which stronger light
 /// does not scale colours from black.
-pub(super) fn in_other_light(space: ColorSpace, colors: &PrincipalColors) -> Vec<ColorState> {
+pub(super) fn in_other_light(space: ColorSpace, colors: &PrincipalColors) -> Vec<ColorDistributionState> {
     let Some(black) = black(space) else { return Vec::new() };
     let lit = |step: i32| {
         let gain = 3_f64.powf(f64::from(step) / f64::from(N_GAINS));
-        let mut state = ColorState::at_rest(colors);
+        let mut state = ColorDistributionState::at_rest(colors);
         let (mean, axis_sigmas) = (black + (state.mean() - black) * gain, state.axis_sigmas() * gain);
         state.value.fixed_rows_mut::<3>(0).copy_from(&mean);
         state.value.fixed_rows_mut::<3>(3).copy_from(&axis_sigmas);

@@ -2,7 +2,7 @@ use super::history::History;
 use super::hypotheses::samples::Samples;
 use super::reference::Reference;
 use super::region::Region;
-use super::{ContourTracker, ContourTrackerParams};
+use super::{ColorContourTracker, ColorContourTrackerParams};
 use crate::StructuringElement;
 use crate::error::check_size;
 use crate::picture::rgb_pixels;
@@ -24,7 +24,7 @@ const LIMB: f64 = 0.08;
 const LEAST_SOLIDITY: f64 = 0.75;
 const SOLID: f64 = 0.95;
 
-impl ContourTracker {
+impl ColorContourTracker {
     /// Starts from an outline in the first picture.
     ///
     /// # Errors
@@ -32,7 +32,7 @@ impl ContourTracker {
     pub fn from_outline(
         picture: &RgbImage,
         outline: &Outline,
-        params: ContourTrackerParams,
+        params: ColorContourTrackerParams,
     ) -> Result<Self, TrackingError> {
         params.validate()?;
         let quantizer = ColorQuantizer::new(params.color_space, params.color_bins)?;
@@ -43,7 +43,7 @@ impl ContourTracker {
         let of_target =
             rgb_pixels(picture).iter().enumerate().filter(|(i, _)| inside.get(i % size.0, i / size.0));
         let colors = of_target.map(|(_, pixel)| params.color_space.convert(*pixel));
-        let cloud = ColorCloud::from_colors(colors, params.max_colors)?;
+        let cloud = ColorCloud::from_colors(colors, params.max_color_points)?;
         let reference = Reference::at_start(cloud, snake)?;
         let samples = Samples::at_start(&reference.colors, params.n_samples)?;
         let (history, status) = (History::at_start(&reference), TrackStatus::Tracked);
@@ -57,7 +57,7 @@ impl ContourTracker {
     pub fn from_mask(
         picture: &RgbImage,
         mask: &PixelMask,
-        params: ContourTrackerParams,
+        params: ColorContourTrackerParams,
     ) -> Result<Self, TrackingError> {
         check_size("width of the mask", picture.width() as usize, mask.width())?;
         check_size("height of the mask", picture.height() as usize, mask.height())?;
@@ -71,7 +71,7 @@ impl ContourTracker {
     pub fn from_box(
         picture: &RgbImage,
         bounds: &BoundingBox,
-        params: ContourTrackerParams,
+        params: ColorContourTrackerParams,
     ) -> Result<Self, TrackingError> {
         let quantizer = ColorQuantizer::new(params.color_space, params.color_bins)?;
         Self::from_outline(picture, &outline_in_box(picture, &quantizer, bounds)?, params)

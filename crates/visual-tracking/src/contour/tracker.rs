@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use super::ContourTrackerParams;
+use super::ColorContourTrackerParams;
 use super::follow::Found;
 use super::history::History;
 use super::hypotheses::candidate::Candidate;
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Tracks a target by its colours, which change, and its contour, which moves by affine maps: CONDENSATION in colour space, validated by
-/// the contour. [Andrade-Cetto & Sanfeliu, section 3.3]
+/// the contour. [Andrade-Cetto 2005, Sec. 3.3, Figs. 10, 13]
 ///
 /// Every sample is a hypothesis about the colours. It warps the colours of the last image, selects their bins, segments the image and fits an
 /// affine snake to the target's blob. Its weight is the agreement with the previous contour and area. The best hypothesis is refined on the image
@@ -23,7 +23,7 @@ use crate::{
 /// finds no blob of its shape and similar colours; the tracker does not learn from such an image.
 /// ```
 /// use rand::SeedableRng;
-/// use wayfix_visual_tracking::{BoundingBox, ContourTracker, ContourTrackerParams, RgbImage, Tracker, TrackStatus};
+/// use wayfix_visual_tracking::{BoundingBox, ColorContourTracker, ColorContourTrackerParams, RgbImage, Tracker, TrackStatus};
 /// let disk = |u: f64, color: [u8; 3]| {
 ///     let inside = |i: usize| (i as f64 % 80.0 - u).hypot((i / 80) as f64 - 30.0) < 12.0;
 ///     let bytes = (0..80 * 60).flat_map(|i| if inside(i) { color } else { [90, 120, 90] }).collect();
@@ -31,7 +31,7 @@ use crate::{
 /// };
 /// let first = disk(30.0, [200, 60, 60]);
 /// let start = BoundingBox::from_corner(18.0, 18.0, 24.0, 24.0)?;
-/// let mut tracker = ContourTracker::from_box(&first, &start, ContourTrackerParams::default())?;
+/// let mut tracker = ColorContourTracker::from_box(&first, &start, ColorContourTrackerParams::default())?;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
 /// let target = tracker.track(&disk(33.0, [190, 62, 64]), &mut rng)?;
 /// assert_eq!(target.status, TrackStatus::Tracked);
@@ -39,8 +39,8 @@ use crate::{
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct ContourTracker {
-    pub(super) params: ContourTrackerParams,
+pub struct ColorContourTracker {
+    pub(super) params: ColorContourTrackerParams,
     pub(super) quantizer: ColorQuantizer,
     pub(super) dynamics: ColorDynamics,
     pub(super) size: (usize, usize),
@@ -50,7 +50,7 @@ pub struct ContourTracker {
     pub(super) status: TrackStatus,
 }
 
-impl ContourTracker {
+impl ColorContourTracker {
     /// The same with dynamics of the colours of one's own, learned ([`ColorDynamics::learn`]) for instance.
     #[must_use]
     pub fn with_dynamics(self, dynamics: ColorDynamics) -> Self {
@@ -81,8 +81,12 @@ impl ContourTracker {
             let before = reference.colors;
             reference.colors = cloud.principal(Some(&before))?;
             let (memory, now) = (self.params.previous_colors_weight, &reference.colors);
-            reference.cloud =
-                cloud.with_memory_of(&reference.cloud, [&before, now], memory, self.params.max_colors)?;
+            reference.cloud = cloud.with_memory_of(
+                &reference.cloud,
+                [&before, now],
+                memory,
+                self.params.max_color_points,
+            )?;
             samples.measure(&before, &reference.colors);
         }
         let outline = found.outline.unwrap_or_else(|| reference.snake.outline());
@@ -104,14 +108,14 @@ impl ContourTracker {
         self.miss()?;
         let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
         let mut best = here;
-        if quality(&best) < self.params.found_above {
+        if quality(&best) < self.params.found_above_quality {
             let elsewhere = self.search(picture, rng)?;
             if quality(&elsewhere) > quality(&best) {
                 best = elsewhere;
             }
         }
         match best {
-            Some(found) if found.quality >= self.params.found_above => self.accept(found),
+            Some(found) if found.quality >= self.params.found_above_quality => self.accept(found),
             best => {
                 self.samples.drift(&self.dynamics, rng);
                 Ok(target(&outline, TrackStatus::Lost, quality(&best)))
@@ -130,7 +134,7 @@ impl ContourTracker {
     }
 }
 
-impl Tracker for ContourTracker {
+impl Tracker for ColorContourTracker {
     /// One step of CONDENSATION.
     ///
     /// # Errors
@@ -143,7 +147,9 @@ impl Tracker for ContourTracker {
         check_size("width of the picture", self.size.0, picture.width() as usize)?;
         check_size("height of the picture", self.size.1, picture.height() as usize)?;
         match self.follow(picture, rng)? {
-            Some(found) if self.status == TrackStatus::Tracked && found.quality >= self.params.lost_below => {
+            Some(found)
+                if self.status == TrackStatus::Tracked && found.quality >= self.params.lost_below_quality =>
+            {
                 self.accept(found)
             }
             found => {

@@ -14,7 +14,7 @@ impl CorrelationTracker {
         around: &WindowSample,
     ) -> Option<(Pose, WindowSample, FilterResponse)> {
         self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
-            let turn = self.n_untrusted.checked_sub(self.params.lost_after)?;
+            let turn = self.n_untrusted.checked_sub(self.params.lost_after_n_frames)?;
             let center = self.place(turn);
             let from = Pose { center, ..self.pose };
             self.recognized_by(&self.trusted, picture, from, &self.recognizer.sample_at(picture, from))

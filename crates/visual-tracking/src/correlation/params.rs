@@ -17,11 +17,11 @@ pub struct CorrelationTrackerParams {
     /// Side of the search window, in sides of a square of the target's area. Default 4.
     pub search_window_scale: f64,
     /// Width of the response that is desired at the target, in sides of the target. Default 1/16.
-    pub response_width: f64,
+    pub target_response_width: f64,
     /// Weight of the previous filter in learning, in units of the energy of an image. Default 2.5.
     pub previous_filter_weight: f64,
     /// Weight by which the filter's two domains are brought to agree, in the same units. Default 0.2.
-    pub domain_agreement_weight: f64,
+    pub spatial_spectral_agreement_weight: f64,
     /// Share of the colour channels in the energy of a picture, unless the first one is grey. Default 0.2.
     pub color_channel_share: f64,
     /// Share of the grey values, the rest being gradients. Default 0.05.
@@ -29,7 +29,7 @@ pub struct CorrelationTrackerParams {
     /// Weight of the colour histograms relative to the filter in the search. Default 0.3.
     pub color_histogram_weight: f64,
     /// Rate at which the colour histograms follow. Default 0.04.
-    pub color_histogram_rate: f64,
+    pub color_histogram_learning_rate: f64,
     /// Standard deviation of the motion of a target between two images, in sides of the target. Default 2.
     pub motion_sigma: f64,
     /// Scales that are compared, an odd number. Default 17.
@@ -37,22 +37,22 @@ pub struct CorrelationTrackerParams {
     /// Factor between two scales. Default 1.03.
     pub scale_step: f64,
     /// Rate at which the filter over scales follows. Default 0.025.
-    pub scale_filter_rate: f64,
+    pub scale_filter_learning_rate: f64,
     /// Peak-to-sidelobe ratio, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
     /// Default 10.
     pub no_evidence_below_psr: f64,
     /// Pictures in a row without evidence after which the target is lost. Default 8.
-    pub lost_after: usize,
+    pub lost_after_n_frames: usize,
     /// Standing out above which a picture is learned. Default 12.
     pub learn_above_psr: f64,
     /// Standing out above which a target is recognized, after an occlusion or a loss. Default 15.
     pub recognize_above_psr: f64,
     /// Minimum share of the typical response for recognition; three fifths of it suffice for a lost target. Default 0.5.
-    pub recognition_response_share: f64,
+    pub min_recognition_response_share: f64,
     /// Share of the typical colour agreement below which a target must also be recognized by its shape. Default 0.5.
-    pub color_agreement_share: f64,
+    pub shape_check_color_agreement_share: f64,
     /// Images after which a changed target is accepted, if its old appearance is not found in another place. Default 60.
-    pub accept_change_after: usize,
+    pub accept_change_after_n_frames: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
     pub n_search_places: usize,
 }
@@ -61,24 +61,24 @@ impl Default for CorrelationTrackerParams {
     fn default() -> Self {
         Self {
             search_window_scale: 4.0,
-            response_width: 0.0625,
+            target_response_width: 0.0625,
             previous_filter_weight: 2.5,
-            domain_agreement_weight: 0.2,
+            spatial_spectral_agreement_weight: 0.2,
             color_channel_share: 0.2,
             gray_channel_share: 0.05,
             color_histogram_weight: 0.3,
-            color_histogram_rate: 0.04,
+            color_histogram_learning_rate: 0.04,
             motion_sigma: 2.0,
             n_scale_hypotheses: 17,
             scale_step: 1.03,
-            scale_filter_rate: 0.025,
+            scale_filter_learning_rate: 0.025,
             no_evidence_below_psr: 10.0,
-            lost_after: 8,
+            lost_after_n_frames: 8,
             learn_above_psr: 12.0,
             recognize_above_psr: 15.0,
-            recognition_response_share: 0.5,
-            color_agreement_share: 0.5,
-            accept_change_after: 60,
+            min_recognition_response_share: 0.5,
+            shape_check_color_agreement_share: 0.5,
+            accept_change_after_n_frames: 60,
             n_search_places: 2,
         }
     }
@@ -93,8 +93,8 @@ impl CorrelationTrackerParams {
             (1.5..=8.0).contains(&self.search_window_scale),
             "between 1.5 and 8",
         )?;
-        positive("response_width", self.response_width)?;
-        positive("domain_agreement_weight", self.domain_agreement_weight)?;
+        positive("target_response_width", self.target_response_width)?;
+        positive("spatial_spectral_agreement_weight", self.spatial_spectral_agreement_weight)?;
         positive("motion_sigma", self.motion_sigma)?;
         checked(
             "previous_filter_weight",
@@ -108,10 +108,10 @@ impl CorrelationTrackerParams {
             ("color_channel_share", self.color_channel_share),
             ("gray_channel_share", self.gray_channel_share),
             ("color_histogram_weight", self.color_histogram_weight),
-            ("color_histogram_rate", self.color_histogram_rate),
-            ("scale_filter_rate", self.scale_filter_rate),
-            ("recognition_response_share", self.recognition_response_share),
-            ("color_agreement_share", self.color_agreement_share),
+            ("color_histogram_learning_rate", self.color_histogram_learning_rate),
+            ("scale_filter_learning_rate", self.scale_filter_learning_rate),
+            ("min_recognition_response_share", self.min_recognition_response_share),
+            ("shape_check_color_agreement_share", self.shape_check_color_agreement_share),
         ] {
             probability(what, value)?;
         }

@@ -41,7 +41,7 @@ impl Recognizer {
         let is_grey = rgb_pixels(picture).iter().all(|&[r, g, b]| r == g && g == b);
         let color = if is_grey { 0.0 } else { params.color_channel_share as f32 };
         let grey = params.gray_channel_share as f32;
-        let sigma = params.response_width * window.target_cells();
+        let sigma = params.target_response_width * window.target_cells();
         let filter = CorrelationFilter::new(SIDE, sigma, window.support());
         Self { window, filter, shares: Shares { gradient: 1.0 - color - grey, grey, color } }
     }

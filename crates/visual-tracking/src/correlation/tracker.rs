@@ -109,7 +109,7 @@ impl CorrelationTracker {
         let recognizer = Recognizer::new(picture, size, &params);
         let pose = Pose { center: target.center(), scale: 1.0 };
         let sample = recognizer.sample_at(picture, pose);
-        let learning = Learning { inertia: 0.0, penalty: params.domain_agreement_weight as f32 };
+        let learning = Learning { inertia: 0.0, penalty: params.spatial_spectral_agreement_weight as f32 };
         let current = recognizer.filter.learned(None, &sample.spectrum, learning);
         let typical_response = recognizer.evidence(&current, &sample).value;
         if typical_response <= 0.0 {
@@ -163,7 +163,7 @@ impl CorrelationTracker {
             if is_unlike { self.params.recognize_above_psr } else { self.params.no_evidence_below_psr };
         if evidence.peak_to_sidelobe < least {
             self.n_without_evidence += 1;
-            self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after);
+            self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after_n_frames);
         } else {
             self.n_without_evidence = 0;
             self.pose = pose;
@@ -202,7 +202,7 @@ impl CorrelationTracker {
 
     pub(super) fn recognized(&self, evidence: FilterResponse) -> bool {
         // a lost target has changed more since it was learned, and a lower threshold carries no risk
-        let share = self.params.recognition_response_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
+        let share = self.params.min_recognition_response_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
         evidence.peak_to_sidelobe > self.params.recognize_above_psr
             && evidence.value > share * self.typical_response
     }
@@ -213,7 +213,7 @@ impl CorrelationTracker {
     }
 
     fn is_typical(&self, agreement: f64) -> bool {
-        agreement >= self.params.color_agreement_share * self.typical_color_agreement
+        agreement >= self.params.shape_check_color_agreement_share * self.typical_color_agreement
     }
 
     fn agreement(&self, sample: &WindowSample) -> f64 {
@@ -230,24 +230,29 @@ impl CorrelationTracker {
         let recognized = self.recognized(trust);
         self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
         let agreement = self.agreement(sample);
-        let may_be_another =
-            !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.accept_change_after;
+        let may_be_another = !recognized
+            && !self.is_typical(agreement)
+            && self.n_untrusted <= self.params.accept_change_after_n_frames;
         if evidence.peak_to_sidelobe < self.params.learn_above_psr || may_be_another {
             return;
         }
         let window = &self.recognizer.window;
         let learning = Learning {
             inertia: self.params.previous_filter_weight as f32,
-            penalty: self.params.domain_agreement_weight as f32,
+            penalty: self.params.spatial_spectral_agreement_weight as f32,
         };
         self.current = self.recognizer.filter.learned(Some(&self.current), &sample.spectrum, learning);
         if self.n_recentering == 0 {
-            self.colors.learn(&sample.patch, window.target_pixels(), self.params.color_histogram_rate as f32);
+            self.colors.learn(
+                &sample.patch,
+                window.target_pixels(),
+                self.params.color_histogram_learning_rate as f32,
+            );
         }
         let size = window.size(self.pose.scale);
-        self.scales.learn(picture, self.pose.center, size, self.params.scale_filter_rate as f32);
+        self.scales.learn(picture, self.pose.center, size, self.params.scale_filter_learning_rate as f32);
         self.learned.clone_from(&sample.patch);
-        if recognized || self.n_untrusted > self.params.accept_change_after {
+        if recognized || self.n_untrusted > self.params.accept_change_after_n_frames {
             self.trusted.clone_from(&self.current);
             self.n_untrusted = 0;
             let value = if recognized { trust.value } else { evidence.value };

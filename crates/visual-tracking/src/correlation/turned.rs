@@ -39,7 +39,7 @@ impl CorrelationTracker {
         let pose = self.recognizer.window.moved(from, [cos * x - sin * y, sin * x + cos * y]);
         let sample = self.recognizer.sample_at(picture, pose);
         let is_clear = peak.peak_to_sidelobe > STRICTER * self.params.recognize_above_psr
-            && peak.value > self.params.recognition_response_share * self.typical_response;
+            && peak.value > self.params.min_recognition_response_share * self.typical_response;
         if !is_clear || !self.has_target_colors(&sample) {
             return 0.0;
         }
@@ -50,7 +50,8 @@ impl CorrelationTracker {
 
     /// Relearns the target at a pose.
     pub(super) fn relearn(&mut self, picture: &RgbImage, pose: Pose, sample: &WindowSample) {
-        let learning = Learning { inertia: 0.0, penalty: self.params.domain_agreement_weight as f32 };
+        let learning =
+            Learning { inertia: 0.0, penalty: self.params.spatial_spectral_agreement_weight as f32 };
         self.current = self.recognizer.filter.learned(None, &sample.spectrum, learning);
         self.trusted.clone_from(&self.current);
         self.scales.learn(picture, pose.center, self.recognizer.window.size(pose.scale), 1.0);

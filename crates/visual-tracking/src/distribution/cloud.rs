@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::{AffineColorMap, ColorState, PrincipalColors};
+use super::{AffineColorMap, ColorDistributionState, PrincipalColors};
 use crate::TrackingError;
 use crate::error::checked;
 
@@ -10,7 +10,7 @@ const N_CELLS: f64 = 64.0;
 /// Pixels below which a remembered point is forgotten.
 const FADED: f64 = 0.5;
 
-/// The target's colours, $`\mathcal C_t`$, as points of the colour space with pixel counts. [Andrade-Cetto & Sanfeliu, section 3.3]
+/// The target's colours, $`\mathcal C_t`$, as points of the colour space with pixel counts. [Andrade-Cetto 2005, Sec. 3.3]
 ///
 /// Pixels of nearly equal colour are one point, so the size of the cloud does not grow with the target.
 /// ```
@@ -112,7 +112,7 @@ impl ColorCloud {
         memory: f64,
         max_points: usize,
     ) -> Result<Self, TrackingError> {
-        let mut state = ColorState::at_rest(now);
+        let mut state = ColorDistributionState::at_rest(now);
         let [theta, phi] = now.angles_since(before);
         (state.value[6], state.value[7]) = (theta, phi);
         let warp = state.warp_from(before);

@@ -2,13 +2,13 @@ use nalgebra::{SMatrix, SVector};
 use rand::{Rng, RngExt as _};
 use rand_distr::StandardNormal;
 
-use super::{COLOR_DIM, ColorState, ColorStateVector};
+use super::{COLOR_DIM, ColorDistributionState, ColorStateVector};
 use crate::TrackingError;
 
 type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 
 /// How colours change from one picture to the next: $`\mathbf s_t = A\, \mathbf s'_{t-1} + B\, \mathbf w_t`$ with
-/// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto & Sanfeliu, section 3.3,
+/// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto 2005, Sec. 3.3,
 /// "Probabilistic propagation of samples"]
 ///
 /// The velocity is the last change, so $`A`$ and $`B`$ have two equivalent block rows:
@@ -16,9 +16,9 @@ type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 ///
 /// ```
 /// use rand::SeedableRng;
-/// use wayfix_visual_tracking::{ColorDynamics, ColorState, ColorStateVector};
+/// use wayfix_visual_tracking::{ColorDynamics, ColorDistributionState, ColorStateVector};
 /// let dynamics = ColorDynamics::constant_velocity(1.0, &ColorStateVector::zeros())?;
-/// let moving = ColorState { value: ColorStateVector::repeat(0.5), velocity: ColorStateVector::repeat(0.1) };
+/// let moving = ColorDistributionState { value: ColorStateVector::repeat(0.5), velocity: ColorStateVector::repeat(0.1) };
 /// let next = dynamics.propagate(&moving, &mut rand_chacha::ChaCha8Rng::seed_from_u64(1));
 /// assert!((next.value[0] - 0.6).abs() < 1e-12 && (next.velocity[0] - 0.1).abs() < 1e-12);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
@@ -81,18 +81,22 @@ impl ColorDynamics {
     }
 
     /// The state after one picture without noise.
-    pub fn expected(&self, state: &ColorState) -> ColorState {
+    pub fn expected(&self, state: &ColorDistributionState) -> ColorDistributionState {
         self.moved(state, ColorStateVector::zeros())
     }
 
     /// A state after one picture, drawn at random.
-    pub fn propagate<R: Rng + ?Sized>(&self, state: &ColorState, rng: &mut R) -> ColorState {
+    pub fn propagate<R: Rng + ?Sized>(
+        &self,
+        state: &ColorDistributionState,
+        rng: &mut R,
+    ) -> ColorDistributionState {
         let w: ColorStateVector = SVector::from_fn(|_, _| rng.sample(StandardNormal));
         self.moved(state, self.noise * w)
     }
 
-    fn moved(&self, state: &ColorState, noise: ColorStateVector) -> ColorState {
+    fn moved(&self, state: &ColorDistributionState, noise: ColorStateVector) -> ColorDistributionState {
         let value = self.from_value * state.value + self.from_velocity * state.velocity + noise;
-        ColorState { value, velocity: value - state.value }
+        ColorDistributionState { value, velocity: value - state.value }
     }
 }

@@ -7,7 +7,7 @@ type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 
 /// Colour dynamics learned from a training sequence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LearnedDynamics {
+pub struct LearnedColorDynamics {
     /// $`A`$ and $`B`$.
     pub dynamics: ColorDynamics,
     /// Covariance of the residuals of the dynamics, $`L Lᵀ`$.
@@ -19,7 +19,7 @@ pub struct LearnedDynamics {
 impl ColorDynamics {
     /// Estimates $`A`$ and $`B`$ from the states of a training sequence by least squares:
     /// $`\min_F \sum_t \| \mathbf x_t - F_x \mathbf x_{t-1} - F_v \dot{\mathbf x}_{t-1} \|^2 + κ \| F - F_0 \|^2`$, and $`L Lᵀ`$ is the
-    /// covariance of the residuals. [Andrade-Cetto & Sanfeliu, section 3.3: "A and B are estimated a priori from a training sequence"]
+    /// covariance of the residuals. [Andrade-Cetto 2005, Sec. 3.3: "A and B are estimated a priori from a training sequence"]
     ///
     /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: a quantity constant in the training sequence then stays constant. It is
     /// in units of the squared states; 0 is plain least squares and needs a sequence in which all 16 numbers vary. The angles of the
@@ -28,7 +28,7 @@ impl ColorDynamics {
     /// # Errors
     /// Returns [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
     /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for a sequence that leaves something open.
-    pub fn learn(series: &[ColorStateVector], ridge: f64) -> Result<LearnedDynamics, TrackingError> {
+    pub fn learn(series: &[ColorStateVector], ridge: f64) -> Result<LearnedColorDynamics, TrackingError> {
         crate::error::checked("ridge", ridge, ridge.is_finite() && ridge >= 0.0, "finite, not negative")?;
         if series.len() < 2 + 2 * COLOR_DIM {
             return Err(TrackingError::Empty { what: "training sequence of 18 states" });
@@ -62,7 +62,7 @@ impl ColorDynamics {
         let from_velocity = Square::identity() + change.fixed_columns::<COLOR_DIM>(COLOR_DIM);
         let noise = square_root(&residual_covariance);
         let dynamics = Self::from_matrices(from_value, from_velocity, noise)?;
-        Ok(LearnedDynamics { dynamics, residual_covariance, n_steps })
+        Ok(LearnedColorDynamics { dynamics, residual_covariance, n_steps })
     }
 }
 
@@ -92,7 +92,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::ColorState;
+    use crate::ColorDistributionState;
 
     /// A stable, coupled truth.
     fn truth() -> ColorDynamics {
@@ -112,7 +112,8 @@ mod tests {
 
     fn series(n: usize, seed: u64) -> Vec<ColorStateVector> {
         let (truth, mut rng) = (truth(), ChaCha8Rng::seed_from_u64(seed));
-        let mut state = ColorState { value: ColorStateVector::zeros(), velocity: ColorStateVector::zeros() };
+        let mut state =
+            ColorDistributionState { value: ColorStateVector::zeros(), velocity: ColorStateVector::zeros() };
         let mut next = || {
             state = truth.propagate(&state, &mut rng);
             state.value
@@ -142,7 +143,10 @@ mod tests {
         let still = vec![ColorStateVector::repeat(0.5); 50];
         assert!(ColorDynamics::learn(&still, 0.0).is_err());
         let learned = ColorDynamics::learn(&still, 1e-3).unwrap();
-        let state = ColorState { value: ColorStateVector::repeat(0.5), velocity: ColorStateVector::zeros() };
+        let state = ColorDistributionState {
+            value: ColorStateVector::repeat(0.5),
+            velocity: ColorStateVector::zeros(),
+        };
         assert!((learned.dynamics.expected(&state).value - state.value).amax() < 1e-9);
         assert!(ColorDynamics::learn(&still[..17], 1.0).is_err());
         assert!(ColorDynamics::learn(&still, f64::NAN).is_err());

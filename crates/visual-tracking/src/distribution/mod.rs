@@ -9,7 +9,7 @@ mod warp;
 
 pub use cloud::ColorCloud;
 pub use dynamics::ColorDynamics;
-pub use learn::LearnedDynamics;
+pub use learn::LearnedColorDynamics;
 pub use principal::PrincipalColors;
-pub use state::{COLOR_DIM, ColorState, ColorStateVector};
+pub use state::{COLOR_DIM, ColorDistributionState, ColorStateVector};
 pub use warp::AffineColorMap;

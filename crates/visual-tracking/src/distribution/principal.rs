@@ -6,7 +6,7 @@ use crate::TrackingError;
 const TIE: f64 = 1.0 / (255.0 * 255.0 * 12.0);
 
 /// Centroid and principal components of a set of colours: $`\mathbf m`$, $`\boldsymbol λ`$ and the axes that go with them.
-/// [Andrade-Cetto & Sanfeliu, section 3.3, "Parameterization and pdf of color distribution"]
+/// [Andrade-Cetto 2005, Sec. 3.3, "Parameterization and pdf of color distribution"]
 ///
 /// Magnitudes are standard deviations along the axes, in units of the colour space. The axes are a right-handed frame.
 ///

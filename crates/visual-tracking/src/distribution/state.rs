@@ -9,16 +9,16 @@ pub const COLOR_DIM: usize = 8;
 pub type ColorStateVector = SVector<f64, COLOR_DIM>;
 
 /// Colour state of one sample: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
-/// [Andrade-Cetto & Sanfeliu, section 3.3]
+/// [Andrade-Cetto 2005, Sec. 3.3]
 ///
 /// The angles are against the axes of a reference distribution, so a state means something only beside it.
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_visual_tracking::{ColorState, PrincipalColors};
+/// use wayfix_visual_tracking::{ColorDistributionState, PrincipalColors};
 /// let colors = [Vector3::new(0.2, 0.5, 0.5), Vector3::new(0.4, 0.5, 0.5)];
 /// let reference = PrincipalColors::of(&colors, &[1.0; 2], None)?;
-/// let mut brighter = ColorState::at_rest(&reference);
+/// let mut brighter = ColorDistributionState::at_rest(&reference);
 /// brighter.value[0] += 0.1; // the centroid
 /// brighter.value[3] *= 2.0; // the deviation along the first axis
 /// let warped = brighter.warp_from(&reference).apply(&colors[1]);
@@ -26,14 +26,14 @@ pub type ColorStateVector = SVector<f64, COLOR_DIM>;
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColorState {
+pub struct ColorDistributionState {
     /// $`\mathbf x`$.
     pub value: ColorStateVector,
     /// Change of $`\mathbf x`$ from one picture to the next.
     pub velocity: ColorStateVector,
 }
 
-impl ColorState {
+impl ColorDistributionState {
     /// The state of the reference itself, which does not move.
     pub fn at_rest(reference: &PrincipalColors) -> Self {
         let mut value = ColorStateVector::zeros();

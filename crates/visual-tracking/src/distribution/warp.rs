@@ -6,7 +6,7 @@ const FLAT: f64 = 1.0 / 255.0;
 /// Maximum factor by which one step stretches or shrinks an axis.
 const MAX_SCALE: f64 = 3.0;
 
-/// An affine map of the colour space. [`ColorState::warp_from`](super::ColorState::warp_from) makes it.
+/// An affine map of the colour space. [`ColorDistributionState::warp_from`](super::ColorDistributionState::warp_from) makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineColorMap {
     linear: Matrix3<f64>,

@@ -47,7 +47,7 @@ impl BimodalHistogram {
     /// φ(C) = \frac{\sum_i \min(C(i), m_{k(i)} M(i))}{\sum_i C(i)}, \qquad m_k = \sum_{i \in k} C(i)
     /// ```
     ///
-    /// over the bins of the model. With one mode, of all pixels, this is [Andrade-Cetto & Sanfeliu 2004, Eq. 28].
+    /// over the bins of the model. With one mode, of all pixels, this is [Andrade-Cetto 2005, Eq. 28].
     pub(super) fn intersection(&self, candidate: &ColorHistogram, n_pixels: usize) -> f64 {
         let counts = candidate.counts();
         let mut masses = [n_pixels as f64, 0.0];
@@ -60,7 +60,12 @@ impl BimodalHistogram {
         self.known.iter().map(shared).sum::<f64>() / n_pixels.max(1) as f64
     }
 
-    /// $`M_k = (1 − a) M_{k−1} + a C_k`$ [Andrade-Cetto & Sanfeliu 2004, Eq. 29], for each mode that is in sight.
+    /// Share of each colour in its mode.
+    pub(super) fn shares(&self) -> &[f64] {
+        &self.shares
+    }
+
+    /// $`M_k = (1 − a) M_{k−1} + a C_k`$ [Andrade-Cetto 2005, Eq. 29], for each mode that is in sight.
     pub(super) fn adapt(&mut self, candidate: &[f64], rate: f64) {
         let masses = self.masses(candidate);
         let total = masses[0] + masses[1];

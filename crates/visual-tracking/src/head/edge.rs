@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use crate::RgbImage;
 
 /// Number of points on an ellipse at which the gradient is evaluated.
-const N_POINTS: usize = 64;
+pub(super) const N_POINTS: usize = 64;
 
 /// The gradient of the grey values of a picture.
 #[derive(Clone, Debug)]
@@ -36,9 +36,12 @@ impl GradientField {
 
     /// The mean gradient across a rim about `center`, $`\frac1N \sum_i |n_i · g_i|`$; beyond the picture there is none. [Birchfield 1998]
     pub(super) fn across(&self, rim: &Rim, center: [i64; 2]) -> f64 {
-        let sum: f32 =
-            rim.points.iter().map(|(offset, normal)| self.along(center, offset, normal).abs()).sum();
-        f64::from(sum) / N_POINTS as f64
+        f64::from(self.strengths(rim, center).sum::<f32>()) / N_POINTS as f64
+    }
+
+    /// $`|n_i · g_i|`$ at every point of a rim about `center`.
+    pub(super) fn strengths(&self, rim: &Rim, center: [i64; 2]) -> impl Iterator<Item = f32> {
+        rim.points.iter().map(move |(offset, normal)| self.along(center, offset, normal).abs())
     }
 
     fn along(&self, center: [i64; 2], offset: &[i64; 2], normal: &[f32; 2]) -> f32 {
@@ -64,6 +67,12 @@ impl Rim {
             ([(a * cos).round() as i64, (b * sin).round() as i64], normal)
         };
         Self { points: (0..N_POINTS).map(point).collect() }
+    }
+
+    /// Every fourth point of the rim about `center`.
+    pub(super) fn some_points(&self, center: [i64; 2]) -> Vec<[i64; 2]> {
+        let place = |(offset, _): &([i64; 2], [f32; 2])| [center[0] + offset[0], center[1] + offset[1]];
+        self.points.iter().step_by(4).map(place).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 use super::bimodal::BimodalHistogram;
 use super::edge::{GradientField, Rim};
+use super::likelihood::{CueRatios, RatioSums};
 use crate::TrackingError;
 use crate::{ColorBinImage, RowSpans, SlidingHistogram};
 
@@ -11,18 +12,32 @@ const STEPS: i64 = 8;
 pub(super) struct Candidate {
     pub(super) center: [i64; 2],
     pub(super) semi_axes: [f64; 2],
-    /// Histogram intersection.
-    pub(super) color: f64,
-    /// Mean gradient across the rim.
-    pub(super) gradient: f64,
+    /// Histogram intersection, or the sum of the ratios.
+    color: f64,
+    /// Mean gradient across the rim, or the sum of the ratios.
+    gradient: f64,
+}
+
+impl Candidate {
+    /// The log-likelihood ratio, if the cues count by their ratios.
+    pub(super) fn log_ratio(&self) -> f64 {
+        self.color + self.gradient
+    }
+}
+
+/// How the cues count.
+pub(super) enum Cues<'a> {
+    /// By their ratios.
+    Ratios(&'a CueRatios, RatioSums),
+    /// Histogram intersection and mean gradient, each scaled to its range, with this weight of the gradient.
+    Fixed(&'a BimodalHistogram, f64),
 }
 
 /// A picture in which the head is searched.
 pub(super) struct Search<'a> {
     pub(super) bins: &'a ColorBinImage,
     pub(super) field: &'a GradientField,
-    pub(super) model: &'a BimodalHistogram,
-    pub(super) gradient_weight: f64,
+    pub(super) cues: Cues<'a>,
 }
 
 impl Search<'_> {
@@ -55,7 +70,7 @@ impl Search<'_> {
         let mut candidates = Vec::new();
         for &semi_axes in sizes {
             let (spans, rim) = (RowSpans::ellipse(semi_axes)?, Rim::ellipse(semi_axes));
-            let mut sliding = SlidingHistogram::new(self.bins, spans, around);
+            let mut sliding = SlidingHistogram::new(self.bins, spans.clone(), around);
             for j in -n..=n {
                 for i in -n..=n {
                     // alternate the direction, so that successive ellipses overlap
@@ -64,22 +79,25 @@ impl Search<'_> {
                     if !self.contains(center) {
                         continue;
                     }
-                    sliding.move_to(center);
-                    let color =
-                        self.model.intersection(sliding.histogram(), self.n_inside(sliding.spans(), center));
-                    candidates.push(Candidate {
-                        center,
-                        semi_axes,
-                        color,
-                        gradient: self.field.across(&rim, center),
-                    });
+                    let (color, gradient) = match &self.cues {
+                        Cues::Ratios(ratios, sums) => {
+                            (sums.inside(&spans, center), ratios.of_rim(self.field, &rim, center))
+                        }
+                        Cues::Fixed(model, _) => {
+                            sliding.move_to(center);
+                            let n_pixels = n_inside(self.bins, &spans, center);
+                            let color = model.intersection(sliding.histogram(), n_pixels);
+                            (color, self.field.across(&rim, center))
+                        }
+                    };
+                    candidates.push(Candidate { center, semi_axes, color, gradient });
                 }
             }
         }
         Ok(candidates)
     }
 
-    /// The highest sum of both modules, each scaled to the range it has among the candidates. [Birchfield 1998]
+    /// The highest sum of the ratios, or of both modules, each scaled to the range it has among the candidates. [Birchfield 1998]
     fn better(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
         let scaled = |module: fn(&Candidate) -> f64| {
             let low = candidates.iter().map(module).fold(f64::INFINITY, f64::min);
@@ -89,23 +107,25 @@ impl Search<'_> {
             }
         };
         let (color, gradient) = (scaled(|c| c.color), scaled(|c| c.gradient));
-        let weight = self.gradient_weight;
-        let score = |c: &Candidate| (1.0 - weight) * color(c) + weight * gradient(c);
-        candidates.iter().copied().max_by(|a, b| score(a).total_cmp(&score(b)))
-    }
-
-    /// Pixels of the picture under a shape about `center`.
-    fn n_inside(&self, spans: &RowSpans, center: [i64; 2]) -> usize {
-        let (width, height) = (self.bins.width() as i64, self.bins.height() as i64);
-        let row = |v: i64| {
-            let columns = spans.columns(v).filter(|_| (0..height).contains(&(v + center[1]))).unwrap_or(0..0);
-            ((columns.end + center[0]).min(width) - (columns.start + center[0]).max(0)).max(0) as usize
+        let score = |c: &Candidate| match self.cues {
+            Cues::Ratios(..) => c.log_ratio(),
+            Cues::Fixed(_, weight) => (1.0 - weight) * color(c) + weight * gradient(c),
         };
-        spans.rows().map(row).sum()
+        candidates.iter().copied().max_by(|a, b| score(a).total_cmp(&score(b)))
     }
 
     fn contains(&self, center: [i64; 2]) -> bool {
         (0..self.bins.width() as i64).contains(&center[0])
             && (0..self.bins.height() as i64).contains(&center[1])
     }
+}
+
+/// Pixels of the picture under a shape about `center`.
+pub(super) fn n_inside(bins: &ColorBinImage, spans: &RowSpans, center: [i64; 2]) -> usize {
+    let (width, height) = (bins.width() as i64, bins.height() as i64);
+    let row = |v: i64| {
+        let columns = spans.columns(v).filter(|_| (0..height).contains(&(v + center[1]))).unwrap_or(0..0);
+        ((columns.end + center[0]).min(width) - (columns.start + center[0]).max(0)).max(0) as usize
+    };
+    spans.rows().map(row).sum()
 }

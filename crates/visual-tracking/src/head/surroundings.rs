@@ -13,13 +13,9 @@ pub(super) fn own_colors(
     center: [i64; 2],
     semi_axes: [f64; 2],
 ) -> Result<Vec<f64>, TrackingError> {
-    let count = |axes: [f64; 2]| -> Result<ColorHistogram, TrackingError> {
-        Ok(SlidingHistogram::new(bins, RowSpans::ellipse(axes)?, center).into_histogram())
-    };
-    let (inside, both) = (count(semi_axes)?, count(semi_axes.map(|axis| SQRT_2 * axis))?);
-    let n_around = both.total() - inside.total();
+    let (_, around) = ring(bins, center, semi_axes)?;
+    let n_around = around.iter().sum::<f64>();
     let n_head = head.total();
-    let around = both.counts().iter().zip(inside.counts()).map(|(both, inside)| both - inside);
     let own: Vec<f64> = head
         .counts()
         .iter()
@@ -27,4 +23,18 @@ pub(super) fn own_colors(
         .map(|(&count, around)| if around * n_head >= count * n_around && around > 0.0 { 0.0 } else { count })
         .collect();
     Ok(if own.iter().any(|&count| count > 0.0) { own } else { head.counts().to_vec() })
+}
+
+/// The colours in an ellipse, and the counts of those in the ring of equal area outside it.
+pub(super) fn ring(
+    bins: &ColorBinImage,
+    center: [i64; 2],
+    semi_axes: [f64; 2],
+) -> Result<(ColorHistogram, Vec<f64>), TrackingError> {
+    let count = |axes: [f64; 2]| -> Result<ColorHistogram, TrackingError> {
+        Ok(SlidingHistogram::new(bins, RowSpans::ellipse(axes)?, center).into_histogram())
+    };
+    let (inside, both) = (count(semi_axes)?, count(semi_axes.map(|axis| SQRT_2 * axis))?);
+    let around = both.counts().iter().zip(inside.counts()).map(|(both, inside)| both - inside).collect();
+    Ok((inside, around))
 }

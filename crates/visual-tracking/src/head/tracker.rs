@@ -3,9 +3,10 @@ use std::f64::consts::TAU;
 
 use super::bimodal::BimodalHistogram;
 use super::edge::GradientField;
+use super::likelihood::{CueRatios, RatioSums};
 use super::params::HeadTrackerParams;
-use super::scale_source::{ScaleSource, SearchedScale};
-use super::search::{Candidate, Search};
+use super::scale_source::{HeadSizeFromSearch, RelativeHeadSizeSource};
+use super::search::{Candidate, Cues, Search, n_inside};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
 use crate::{
@@ -19,13 +20,21 @@ const MIN_SEMI_AXIS: f64 = 3.0;
 /// Points of an outline.
 const N_OUTLINE: usize = 48;
 
-/// Tracks a head as an upright ellipse, by the colours inside and the gradient across its rim. [Andrade-Cetto & Sanfeliu 2004, sec. 3.2;
+/// Tracks a head as an upright ellipse, by the colours inside and the gradient across its rim. [Andrade-Cetto 2005, Sec. 3.2;
 /// Birchfield 1998]
 ///
-/// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head [Eq. 28], updated
-/// incrementally between ellipses, and by the gradient across its rim. Both are scaled to their range; the highest sum wins. The colours adapt
-/// [Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more frequent around the
-/// ellipse than in it are excluded. The size comes from a [`ScaleSource`] or from the search.
+/// Every ellipse $`E`$ around the constant-velocity prediction is scored by the log-likelihood ratio of head and surroundings,
+///
+/// ```math
+/// \sum_{p \in E} \ln \frac{M(c_p)}{R(c_p)} + \sum_{i \in \partial E} \ln \frac{H(|n_i · g_i|)}{S(|n_i · g_i|)},
+/// ```
+///
+/// with the colour distributions $`M`$ of the head and $`R`$ of the ring of equal area around it, and the distributions $`H`$ and $`S`$ of the
+/// gradient across its rim and across displaced rims. All are measured in the last picture; the highest sum wins. $`M`$ and $`H`$ adapt
+/// [Andrade-Cetto 2005, Eq. 29] where the histogram intersection [Andrade-Cetto 2005, Eq. 28] is high. The size comes from a [`RelativeHeadSizeSource`] or from the search.
+///
+/// With a fixed [`gradient_weight`](HeadTrackerParams::gradient_weight), intersection and mean gradient are scaled to their ranges and added, as
+/// published. Skin and hair are then two modes of variable proportion.
 /// ```
 /// use rand::SeedableRng;
 /// use rand_chacha::ChaCha8Rng;
@@ -46,11 +55,13 @@ const N_OUTLINE: usize = 48;
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct HeadTracker<S = SearchedScale> {
+pub struct HeadTracker<S = HeadSizeFromSearch> {
     params: HeadTrackerParams,
     picture_size: (usize, usize),
     quantizer: ColorQuantizer,
     model: BimodalHistogram,
+    /// With fixed weights `None`.
+    ratios: Option<CueRatios>,
     scale_source: S,
     /// Semi-axes of the first ellipse.
     base: [f64; 2],
@@ -113,19 +124,39 @@ impl HeadTracker {
         let bins = ColorBinImage::new(&quantizer, picture)?;
         let center = head.center().map(|c| c.floor() as i64);
         let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
-        let own = own_colors(&bins, &histogram, center, base)?;
-        let model = BimodalHistogram::new(&quantizer, &own, params.bimodal_colors)?;
+        let (model, ratios) = match params.gradient_weight {
+            Some(_) => {
+                let own = own_colors(&bins, &histogram, center, base)?;
+                (BimodalHistogram::new(&quantizer, &own, params.bimodal_colors)?, None)
+            }
+            None => {
+                // The ratios leave out the colours of the surroundings, and a colour's share tells its weight.
+                let model = BimodalHistogram::new(&quantizer, histogram.counts(), false)?;
+                let field = GradientField::new(picture);
+                let ratios = CueRatios::measured(&model, (&bins, &field), (center, base), None)?;
+                (model, Some(ratios))
+            }
+        };
         let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_without_evidence: 0, is_lost: false };
         let picture_size = (picture.width() as usize, picture.height() as usize);
-        Ok(Self { params, picture_size, quantizer, model, scale_source: SearchedScale, base, state })
+        Ok(Self {
+            params,
+            picture_size,
+            quantizer,
+            model,
+            ratios,
+            scale_source: HeadSizeFromSearch,
+            base,
+            state,
+        })
     }
 }
 
-impl<S: ScaleSource> HeadTracker<S> {
+impl<S: RelativeHeadSizeSource> HeadTracker<S> {
     /// Replaces the source of the scale.
-    pub fn with_scale_source<T: ScaleSource>(self, scale_source: T) -> HeadTracker<T> {
-        let Self { params, picture_size, quantizer, model, base, state, .. } = self;
-        HeadTracker { params, picture_size, quantizer, model, scale_source, base, state }
+    pub fn with_scale_source<T: RelativeHeadSizeSource>(self, scale_source: T) -> HeadTracker<T> {
+        let Self { params, picture_size, quantizer, model, ratios, base, state, .. } = self;
+        HeadTracker { params, picture_size, quantizer, model, ratios, scale_source, base, state }
     }
 
     /// The scales to compare in the next picture.
@@ -153,7 +184,11 @@ impl<S: ScaleSource> HeadTracker<S> {
         scales: &[f64],
     ) -> Result<Option<Candidate>, TrackingError> {
         let HeadState { center, velocity, scale, is_lost, .. } = self.state;
-        let search = Search { bins, field, model: &self.model, gradient_weight: self.params.gradient_weight };
+        let cues = match &self.ratios {
+            Some(ratios) => Cues::Ratios(ratios, RatioSums::new(ratios, bins)),
+            None => Cues::Fixed(&self.model, self.params.gradient_weight.unwrap_or(0.0)),
+        };
+        let search = Search { bins, field, cues };
         let sizes: Vec<[f64; 2]> = scales.iter().map(|scale| self.base.map(|axis| axis * scale)).collect();
         let reach = self.params.search_radius * scale * self.base[0].max(self.base[1]);
         if !is_lost {
@@ -164,16 +199,26 @@ impl<S: ScaleSource> HeadTracker<S> {
         search.best(middle, middle[0].max(middle[1]), &sizes[sizes.len() / 2..][..1])
     }
 
-    fn accept(&mut self, bins: &ColorBinImage, candidate: Candidate) -> Result<(), TrackingError> {
+    /// Takes a candidate in and returns its histogram intersection.
+    fn accept(
+        &mut self,
+        bins: &ColorBinImage,
+        field: &GradientField,
+        candidate: Candidate,
+    ) -> Result<f64, TrackingError> {
         let HeadState { center, is_lost, .. } = self.state;
-        if is_lost && candidate.color < self.params.adapt_above_intersection {
-            return Ok(());
+        let spans = RowSpans::ellipse(candidate.semi_axes)?;
+        let n_pixels = n_inside(bins, &spans, candidate.center);
+        let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
+        let color = self.model.intersection(&histogram, n_pixels);
+        if is_lost && color < self.params.adapt_above_intersection {
+            return Ok(color);
         }
-        if candidate.color < self.params.no_evidence_below_intersection {
+        if color < self.params.no_evidence_below_intersection {
             self.state.n_without_evidence += 1;
-            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after;
+            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after_n_frames;
             self.state.velocity = [0; 2];
-            return Ok(());
+            return Ok(color);
         }
         let moved = [candidate.center[0] - center[0], candidate.center[1] - center[1]];
         self.state = HeadState {
@@ -183,12 +228,15 @@ impl<S: ScaleSource> HeadTracker<S> {
             n_without_evidence: 0,
             is_lost: false,
         };
-        if candidate.color >= self.params.adapt_above_intersection {
-            let spans = RowSpans::ellipse(candidate.semi_axes)?;
-            let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
+        if color >= self.params.adapt_above_intersection {
             self.model.adapt(histogram.counts(), self.params.color_adaptation_rate);
         }
-        Ok(())
+        if let Some(before) = &self.ratios {
+            let (place, rate) = ((candidate.center, candidate.semi_axes), self.params.color_adaptation_rate);
+            let ratios = CueRatios::measured(&self.model, (bins, field), place, Some((before, rate)))?;
+            self.ratios = Some(ratios);
+        }
+        Ok(color)
     }
 
     fn target(&self, quality: f64) -> Result<TargetEstimate, TrackingError> {
@@ -207,7 +255,7 @@ impl<S: ScaleSource> HeadTracker<S> {
     }
 }
 
-impl<S: ScaleSource> Tracker for HeadTracker<S> {
+impl<S: RelativeHeadSizeSource> Tracker for HeadTracker<S> {
     fn track<R: Rng + ?Sized>(
         &mut self,
         picture: &RgbImage,
@@ -217,9 +265,20 @@ impl<S: ScaleSource> Tracker for HeadTracker<S> {
         check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
         let scales = self.scales(picture)?;
         let bins = ColorBinImage::new(&self.quantizer, picture)?;
-        let candidate = self.found(&bins, &GradientField::new(picture), &scales)?;
-        let Some(candidate) = candidate else { return self.target(0.0) };
-        self.accept(&bins, candidate)?;
-        self.target(candidate.color.clamp(0.0, 1.0))
+        let field = GradientField::new(picture);
+        let Some(candidate) = self.found(&bins, &field, &scales)? else { return self.target(0.0) };
+        let color = self.accept(&bins, &field, candidate)?;
+        self.target(color.clamp(0.0, 1.0))
+    }
+
+    fn camera_turned(&mut self, shift: [f64; 2]) {
+        let (width, height) = self.picture_size;
+        // Beyond one picture's size there is nothing to find.
+        for (axis, most) in [width as f64, height as f64].into_iter().enumerate() {
+            let moved = self.state.center[axis] as f64 + shift[axis].round();
+            if moved.is_finite() {
+                self.state.center[axis] = moved.clamp(-most, 2.0 * most) as i64;
+            }
+        }
     }
 }

@@ -65,10 +65,10 @@ impl SnakeParams {
     }
 }
 
-/// A contour with a fixed shape up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$. [Andrade-Cetto & Sanfeliu, section 3.1:
+/// A contour with a fixed shape up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$. [Andrade-Cetto 2005, Sec. 3.1, Fig. 12;
 /// "a restriction to the classical snake minimization procedure, to obtain affine deformations only"]
 /// ```
-/// use wayfix_visual_tracking::{AffineSnake, PixelMask, BoundingBox, MaskEdges, Outline, SnakeParams};
+/// use wayfix_visual_tracking::{AffineSnake, PixelMask, BoundingBox, MaskEdgeSearch, Outline, SnakeParams};
 /// let params = SnakeParams::default();
 /// let circle = Outline::ellipse(&BoundingBox::from_center([50.0, 50.0], 40.0, 40.0)?, 100)?;
 /// let snake = AffineSnake::new(&circle, &params)?;
@@ -76,7 +76,7 @@ impl SnakeParams {
 /// let mask = PixelMask::from_fn(120, 100, |u, v| {
 ///     ((u as f64 + 0.5 - 56.0) / 25.0).powi(2) + ((v as f64 + 0.5 - 47.0) / 16.0).powi(2) < 1.0
 /// })?;
-/// let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &params);
+/// let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &params);
 /// assert!(fit.support > 0.95);
 /// let outline = snake.outline_at(&fit.map)?;
 /// assert!((outline.area() - mask.area() as f64).abs() < 0.05 * outline.area());

@@ -13,21 +13,21 @@ pub trait EdgeSearch {
 /// The boundary of a mask, crossed from inside to outside along the normal: $`∇S`$.
 ///
 /// ```
-/// use wayfix_visual_tracking::{PixelMask, EdgeSearch, MaskEdges};
+/// use wayfix_visual_tracking::{PixelMask, EdgeSearch, MaskEdgeSearch};
 /// let mask = PixelMask::from_fn(20, 10, |u, _| u < 8)?;
-/// let edges = MaskEdges::new(&mask, (0, 0));
+/// let edges = MaskEdgeSearch::new(&mask, (0, 0));
 /// assert_eq!(edges.find([5.5, 5.0], [1.0, 0.0], 6.0), Some(2.5)); // pixel 7 is the last, it ends at 8
 /// assert_eq!(edges.find([11.5, 5.0], [1.0, 0.0], 6.0), Some(-3.5));
 /// assert_eq!(edges.find([5.5, 5.0], [-1.0, 0.0], 4.0), None); // that way it stays inside
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct MaskEdges<'a> {
+pub struct MaskEdgeSearch<'a> {
     mask: &'a PixelMask,
     corner: (usize, usize),
 }
 
-impl<'a> MaskEdges<'a> {
+impl<'a> MaskEdgeSearch<'a> {
     /// Edges of a mask whose top left pixel is pixel `corner` of the image.
     pub fn new(mask: &'a PixelMask, corner: (usize, usize)) -> Self {
         Self { mask, corner }
@@ -45,7 +45,7 @@ impl<'a> MaskEdges<'a> {
     }
 }
 
-impl EdgeSearch for MaskEdges<'_> {
+impl EdgeSearch for MaskEdgeSearch<'_> {
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64> {
         let on = |step: f64| self.is_on([point[0] + step * normal[0], point[1] + step * normal[1]]);
         // Searches outwards from inside the target, or inwards from outside.
@@ -67,15 +67,15 @@ impl EdgeSearch for MaskEdges<'_> {
 }
 
 /// The strongest change of colour along the normal, optionally only where a mask allows it: $`∇I · \mathrm{dil}(∇S)`$.
-/// [Andrade-Cetto & Sanfeliu, section 3.3, "Contour updating"]
+/// [Andrade-Cetto 2005, Sec. 3.3, "Contour updating"]
 #[derive(Clone, Copy, Debug)]
-pub struct ColorEdges<'a> {
+pub struct ColorEdgeSearch<'a> {
     picture: &'a RgbImage,
-    band: Option<MaskEdges<'a>>,
+    band: Option<MaskEdgeSearch<'a>>,
     least_contrast: f64,
 }
 
-impl<'a> ColorEdges<'a> {
+impl<'a> ColorEdgeSearch<'a> {
     /// Edges of an image whose colour changes by at least `least_contrast` grey values (root of the sum of squares over the channels) over two
     /// pixels.
     pub fn new(picture: &'a RgbImage, least_contrast: f64) -> Self {
@@ -84,7 +84,7 @@ impl<'a> ColorEdges<'a> {
 
     /// Restricts the edges to a mask whose top left pixel is pixel `corner` of the image.
     pub fn within(self, band: &'a PixelMask, corner: (usize, usize)) -> Self {
-        Self { band: Some(MaskEdges::new(band, corner)), ..self }
+        Self { band: Some(MaskEdgeSearch::new(band, corner)), ..self }
     }
 
     /// Colour between the centres of four pixels; beyond the rim the last pixel repeats.
@@ -102,7 +102,7 @@ impl<'a> ColorEdges<'a> {
     }
 }
 
-impl EdgeSearch for ColorEdges<'_> {
+impl EdgeSearch for ColorEdgeSearch<'_> {
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64> {
         let n = reach.clamp(0.0, 1e3).floor() as i32;
         let at = |k: i32| [0, 1].map(|axis| point[axis] + f64::from(k) * normal[axis]);
@@ -152,7 +152,7 @@ mod tests {
         let bytes =
             (0..20 * 10).flat_map(|i| if i % 20 < 8 { [200, 60, 60] } else { [60, 60, 60] }).collect();
         let picture = RgbImage::from_raw(20, 10, bytes).expect("3 bytes a pixel");
-        let edges = ColorEdges::new(&picture, 20.0);
+        let edges = ColorEdgeSearch::new(&picture, 20.0);
         for start in [5.0, 6.5, 8.0, 9.5] {
             let found = edges.find([start, 5.0], [1.0, 0.0], 5.0).unwrap();
             assert!((start + found - 8.0).abs() <= 0.5, "from {start}: {found}");

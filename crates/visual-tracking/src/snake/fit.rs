@@ -123,7 +123,7 @@ fn along<'a>(
 
 #[cfg(test)]
 mod tests {
-    use crate::{AffineSnake, BoundingBox, MaskEdges, Outline, PixelMask, SnakeParams};
+    use crate::{AffineSnake, BoundingBox, MaskEdgeSearch, Outline, PixelMask, SnakeParams};
 
     fn ellipse(u: f64, v: f64, a: f64, b: f64) -> impl Fn(usize, usize) -> bool {
         move |x, y| ((x as f64 + 0.5 - u) / a).powi(2) + ((y as f64 + 0.5 - v) / b).powi(2) < 1.0
@@ -141,7 +141,7 @@ mod tests {
         // Everything left of column 50 is covered.
         let mask = PixelMask::from_fn(120, 120, |u, v| target(u, v) && u >= 50).unwrap();
         let snake = snake();
-        let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
+        let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
         assert!((outline.centroid()[0] - 64.0).abs() < 1.5, "{:?}", outline.centroid());
         assert!((outline.centroid()[1] - 62.0).abs() < 1.0, "{:?}", outline.centroid());
@@ -154,7 +154,7 @@ mod tests {
         let mask =
             PixelMask::from_fn(120, 120, |u, v| target(u, v) || (u >= 62 && (52..68).contains(&v))).unwrap();
         let snake = snake();
-        let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
+        let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
         // The neck extends from 87 to 120; the snake moves by less than its tolerance.
         let right = outline.points().iter().map(|point| point[0]).fold(0.0, f64::max);
@@ -165,12 +165,13 @@ mod tests {
     fn nothing_in_sight_moves_nothing() {
         let snake = snake();
         for mask in [PixelMask::empty(120, 120).unwrap(), PixelMask::full(120, 120).unwrap()] {
-            let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
+            let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &SnakeParams::default());
             assert_eq!((fit.support, fit.visible), (0.0, 1.0));
             assert!((fit.map.translation - snake.map().translation).norm() < 1e-9);
         }
         let elsewhere = PixelMask::full(10, 10).unwrap();
-        let fit = snake.fit(snake.map(), &MaskEdges::new(&elsewhere, (500, 500)), &SnakeParams::default());
+        let fit =
+            snake.fit(snake.map(), &MaskEdgeSearch::new(&elsewhere, (500, 500)), &SnakeParams::default());
         assert_eq!((fit.support, fit.visible), (0.0, 0.0));
     }
 }

@@ -8,5 +8,5 @@ mod outline;
 
 pub use affine_map::AffineMap;
 pub use affine_snake::{AffineSnake, SnakeFit, SnakeParams};
-pub use edges::{ColorEdges, EdgeSearch, MaskEdges};
+pub use edges::{ColorEdgeSearch, EdgeSearch, MaskEdgeSearch};
 pub use outline::Outline;

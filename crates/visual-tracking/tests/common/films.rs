@@ -6,7 +6,8 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_scene_sim::film::{FilmFrame, Silhouette, SyntheticFilm};
 use wayfix_visual_tracking::{
-    ContourTracker, ContourTrackerParams, PixelMask, RgbImage, TargetEstimate, TrackStatus, Tracker as _,
+    ColorContourTracker, ColorContourTrackerParams, PixelMask, RgbImage, TargetEstimate, TrackStatus,
+    Tracker as _,
 };
 
 /// What became of every frame after the first.
@@ -54,10 +55,10 @@ impl Record {
 }
 
 /// Tracks a film from the true mask of its first frame.
-pub(crate) fn follow(film: &SyntheticFilm, params: ContourTrackerParams) -> Record {
+pub(crate) fn follow(film: &SyntheticFilm, params: ColorContourTrackerParams) -> Record {
     let mut frames = film.frames().expect("a known film");
     let first = frames.next().expect("frames");
-    let start = ContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params);
+    let start = ColorContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params);
     let mut tracker = start.expect("a target in sight");
     let mut rng = ChaCha8Rng::seed_from_u64(film.seed);
     Record(

@@ -16,6 +16,12 @@ pub(super) struct Common {
     /// It is created if missing. Without this option no files are written.
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Write no MCAP of the estimates to --out.
+    #[arg(long, requires = "out")]
+    pub(super) no_mcap: bool,
+    /// Write the estimates without the records of the log, for those who have the log.
+    #[arg(long)]
+    pub(super) no_echo: bool,
     /// Print one JSON object instead of a table.
     ///
     /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.

@@ -2,7 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, bail};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{LogFormat, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::input::Topics;
 
@@ -51,11 +51,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
             arguments.output.display()
         ),
     };
-    let options = OpenOptions {
+    let options = LogOpenOptions {
         format: arguments.from,
         robot: arguments.robot,
         topics: arguments.topics.topics,
-        ..OpenOptions::default()
+        ..LogOpenOptions::default()
     };
     let log = wayfix_sensor_log::open(&arguments.input, &options)?;
     let (read, written) = wayfix_sensor_log::convert(log, &arguments.output, format)?;

@@ -2,7 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::Result;
 use wayfix_evaluation::terminal::print;
-use wayfix_sensor_log::{LogFormat, LogSummary, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogSummary};
 
 use super::input::Topics;
 
@@ -49,11 +49,11 @@ Formats:
 Text may be compressed with gzip.";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let options = OpenOptions {
+    let options = LogOpenOptions {
         format: arguments.format,
         robot: arguments.robot,
         topics: arguments.topics.topics,
-        ..OpenOptions::default()
+        ..LogOpenOptions::default()
     };
     let summary = LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?);
     print(format!("{summary}{}\n", usable_for(&summary).join("\n")))?;

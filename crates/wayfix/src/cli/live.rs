@@ -1,7 +1,7 @@
 use std::net::{IpAddr, SocketAddr};
 
 use anyhow::Result;
-use wayfix_sensor_log::MessageSink;
+use wayfix_sensor_log::FoxgloveMessageSink;
 
 use crate::live::{LiveServer, PlaybackPace};
 use wayfix_evaluation::terminal::print_message;
@@ -47,7 +47,7 @@ impl LiveArguments {
 
 impl Live {
     /// A message sink; returns when a viewer is connected.
-    pub(super) fn sink(&self) -> Box<dyn MessageSink> {
+    pub(super) fn sink(&self) -> Box<dyn FoxgloveMessageSink> {
         self.server.wait_for_viewer();
         self.server.sink(self.pace)
     }

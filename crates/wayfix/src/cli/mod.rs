@@ -1,12 +1,14 @@
 //! The command line: one command a file.
 
 mod common;
-mod completions;
+mod compare;
 mod convert;
+mod help;
 mod info;
 mod input;
 #[cfg_attr(not(feature = "live"), path = "no_live.rs")]
 mod live;
+mod optimize;
 mod outputs;
 mod params;
 mod read_problems;
@@ -33,6 +35,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 ///                                                 a target in every image, from its box in the first
 ///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
+///   wayfix optimize manhattan.g2o.gz              poses that fit the measurements of a pose graph best
+///   wayfix compare results other-results           figures of two reports side by side
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
 struct Arguments {
@@ -49,7 +53,11 @@ enum Command {
     Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
-    Completions(completions::Arguments),
+    Optimize(optimize::Arguments),
+    Compare(compare::Arguments),
+    Doctor(help::doctor::Arguments),
+    Completions(help::completions::Arguments),
+    Manual(help::manual::Arguments),
     /// Make pictures to try a system on.
     #[command(subcommand)]
     Simulate(simulate::Command),
@@ -88,7 +96,11 @@ pub fn main() -> ExitCode {
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
-        Command::Completions(arguments) => completions::main(arguments),
+        Command::Optimize(arguments) => optimize::main(arguments),
+        Command::Compare(arguments) => compare::main(arguments),
+        Command::Doctor(arguments) => help::doctor::main(&arguments),
+        Command::Completions(arguments) => help::completions::main(arguments),
+        Command::Manual(arguments) => help::manual::main(arguments),
         Command::Simulate(command) => simulate::main(command),
     };
     match result {
@@ -101,12 +113,14 @@ pub fn main() -> ExitCode {
 }
 
 fn run(system: Run) -> Result<ExitCode> {
-    match system {
+    run::interrupt::listen()?;
+    let code = match system {
         Run::Slam(arguments) => run::run_slam::main(arguments),
         Run::Lines(arguments) => run::run_lines::main(arguments),
         Run::Color(arguments) => run::run_color::main(arguments),
         Run::Views(arguments) => run::run_views::main(arguments),
         Run::Track(arguments) => run::run_track::main(arguments),
         Run::Cml(arguments) => run::run_cml::main(*arguments),
-    }
+    };
+    code.map(run::interrupt::exit_code)
 }

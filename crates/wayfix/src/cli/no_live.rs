@@ -1,7 +1,7 @@
 //! Replacement of `live.rs` in a build without the feature: `--live` explains how to get it.
 
 use anyhow::Result;
-use wayfix_sensor_log::MessageSink;
+use wayfix_sensor_log::FoxgloveMessageSink;
 
 #[derive(clap::Args)]
 pub(super) struct LiveArguments {
@@ -23,7 +23,7 @@ impl LiveArguments {
 }
 
 impl Live {
-    pub(super) fn sink(&self) -> Box<dyn MessageSink> {
+    pub(super) fn sink(&self) -> Box<dyn FoxgloveMessageSink> {
         match *self {}
     }
 

@@ -5,16 +5,17 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{LogFormat, McapFile, MessageSinks};
+use wayfix_sensor_log::{LogFormat, McapMessageSink, MessageSinks};
 
 use super::{common::Common, live::Live};
 use wayfix_evaluation::{
     plot::SvgPlot,
     report::{
-        MachineInfo, Report, ReportRun, ReportSuite, RunSummary, foxglove_layout, table, table::TableStyle,
+        FullReport, MachineInfo, ReportRun, ReportSuite, RunSummary, foxglove_layout, table,
+        table::TableStyle,
     },
 };
-use wayfix_systems::system::{EstimateDrawing, EstimateRecorder};
+use wayfix_systems::system::{EstimateDrawer, EstimateRecorder};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";
@@ -47,8 +48,8 @@ impl<'a> Outputs<'a> {
     /// Destinations of messages; none without a folder and without a live view. Waits for the first live viewer.
     pub(super) fn sinks(&mut self) -> Result<MessageSinks> {
         let mut sinks: MessageSinks = Vec::new();
-        if let Some(path) = self.file(ESTIMATES) {
-            sinks.push(Box::new(McapFile::create(path)?));
+        if let Some(path) = self.file(ESTIMATES).filter(|_| !self.common.no_mcap) {
+            sinks.push(Box::new(McapMessageSink::create(path)?));
             self.log = Some(ESTIMATES);
         }
         sinks.extend(self.live.as_ref().map(Live::sink));
@@ -56,12 +57,16 @@ impl<'a> Outputs<'a> {
     }
 
     /// Draws the estimates, if there is a folder or a viewer.
-    pub(super) fn estimates<D: EstimateDrawing>(
+    pub(super) fn estimates<D: EstimateDrawer>(
         &mut self,
         origin: LogFormat,
     ) -> Result<Option<EstimateRecorder<D>>> {
         let sinks = self.sinks()?;
-        Ok(if sinks.is_empty() { None } else { Some(EstimateRecorder::new(sinks, origin)?) })
+        if sinks.is_empty() {
+            return Ok(None);
+        }
+        let recorder = EstimateRecorder::new(sinks, origin)?;
+        Ok(Some(if self.common.no_echo { recorder.without_echo() } else { recorder }))
     }
 
     /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.
@@ -103,7 +108,8 @@ fn write_report(out: &Path, suite: &str, run: ReportRun, seed: u64) -> Result<()
     }
     let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();
     let suites = vec![ReportSuite { name: suite.to_owned(), runs: vec![run] }];
-    Report { suites, seed, commit: None, machine: MachineInfo::detect() }.write(out)?;
+    FullReport { suites, seed, commit: None, machine: MachineInfo::detect(), ..FullReport::default() }
+        .write(out)?;
     print_message(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
     Ok(())
 }

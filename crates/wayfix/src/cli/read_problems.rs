@@ -1,5 +1,6 @@
-use wayfix_sensor_log::{Log, LogEnd, LogWarning, ReadReport, Record};
+use wayfix_sensor_log::{Log, LogCompleteness, LogWarning, ReadReport, Record};
 
+use super::run::interrupt;
 use wayfix_evaluation::terminal::print_message;
 use wayfix_systems::system::EventCounts;
 
@@ -23,11 +24,12 @@ pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> 
     }
     events.warnings().iter().for_each(print_message); // those of the log were printed when it was read
     events.add("log_problem", read.n_problems());
-    if read.end != LogEnd::Complete {
+    if read.end != LogCompleteness::Complete {
         events.count("log_incomplete");
     }
     for LogWarning { name, .. } in &read.warnings {
         events.count(name);
     }
-    read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone()).collect()
+    let of_run = read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone());
+    of_run.chain(interrupt::warning()).collect()
 }

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use wayfix_sensor_log::{LogFormat, OpenOptions, PoseKind, Record, RecordData};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, PoseKind, Record, RecordData};
 
 use super::read_problems::read_all;
 use wayfix_systems::system::check_overlap;
@@ -25,7 +25,7 @@ impl TruthFile {
 /// Replaces the true poses and positions of the log by those of the file.
 fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
     let options =
-        OpenOptions { format: Some(LogFormat::Tum), poses: PoseKind::True, ..OpenOptions::default() };
+        LogOpenOptions { format: Some(LogFormat::Tum), poses: PoseKind::True, ..LogOpenOptions::default() };
     let (poses, _) = read_all(wayfix_sensor_log::open(path, &options)?);
     let is_true = |data: &RecordData| matches!(data, RecordData::TruePose(_) | RecordData::TruePosition(_));
     if !poses.iter().any(|record| is_true(&record.data)) {

@@ -8,7 +8,7 @@ use foxglove::{
     ChannelBuilder, ChannelId, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, SinkId,
     websocket::{ChannelView, Client, ServerListener},
 };
-use wayfix_sensor_log::{ChannelKey, Message};
+use wayfix_sensor_log::{ChannelKey, FoxgloveMessage};
 
 use super::backlog::Backlog;
 
@@ -36,7 +36,11 @@ struct LiveChannel {
 
 impl Audience {
     /// Passes a message on; its channel is announced first where it is new.
-    pub(super) fn send(&self, context: &Arc<Context>, message: &Message<'_>) -> Result<(), FoxgloveError> {
+    pub(super) fn send(
+        &self,
+        context: &Arc<Context>,
+        message: &FoxgloveMessage<'_>,
+    ) -> Result<(), FoxgloveError> {
         let mut state = self.state();
         let key = message.channel();
         if !state.channels.contains_key(&key) {
@@ -115,12 +119,12 @@ impl ServerListener for Audience {
 }
 
 impl LiveChannel {
-    fn announce(context: &Arc<Context>, message: &Message<'_>) -> Result<Self, FoxgloveError> {
-        let schema = Schema::new(message.schema, Message::ENCODING, message.descriptors.to_vec());
+    fn announce(context: &Arc<Context>, message: &FoxgloveMessage<'_>) -> Result<Self, FoxgloveError> {
+        let schema = Schema::new(message.schema, FoxgloveMessage::ENCODING, message.descriptors.to_vec());
         let channel = ChannelBuilder::new(message.topic)
             .context(context)
             .schema(schema)
-            .message_encoding(Message::ENCODING)
+            .message_encoding(FoxgloveMessage::ENCODING)
             .metadata(message.metadata.clone())
             .build_raw()?;
         Ok(Self { channel, subscribers: BTreeSet::new(), backlog: Backlog::default() })

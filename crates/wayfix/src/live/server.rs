@@ -6,7 +6,7 @@ use std::{
 };
 
 use foxglove::{Context, FoxgloveError, WebSocketServer, WebSocketServerHandle, websocket::Capability};
-use wayfix_sensor_log::MessageSink;
+use wayfix_sensor_log::FoxgloveMessageSink;
 
 use super::{
     LiveServerError, PlaybackPace,
@@ -22,9 +22,9 @@ const GRACE: Duration = Duration::from_secs(2);
 /// It is read-only: viewers cannot change or publish anything.
 /// ```
 /// use wayfix::live::{LiveServerError, LiveServer, PlaybackPace};
-/// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateRecorder};
+/// # use wayfix_systems::{points::PointSlamFrontEnd, slam::SlamEstimateRecorder};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
-/// let estimates = SlamEstimateRecorder::<PointFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
+/// let estimates = SlamEstimateRecorder::<PointSlamFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
 /// let again = LiveServer::start(server.address());
 /// assert!(matches!(again, Err(LiveServerError::InUse { .. })));
@@ -81,7 +81,7 @@ impl LiveServer {
     }
 
     /// Takes messages and passes them on at a pace.
-    pub fn sink(&self, pace: PlaybackPace) -> Box<dyn MessageSink> {
+    pub fn sink(&self, pace: PlaybackPace) -> Box<dyn FoxgloveMessageSink> {
         Box::new(LiveSink {
             context: Arc::clone(&self.context),
             server: Arc::clone(&self.handle),

@@ -1,7 +1,7 @@
 use std::{sync::Arc, time::Duration};
 
 use foxglove::{Context, WebSocketServerHandle};
-use wayfix_sensor_log::{LogError, Message, MessageSink, Stamp};
+use wayfix_sensor_log::{FoxgloveMessage, FoxgloveMessageSink, LogError, Stamp};
 
 use super::{PlaybackPace, audience::Audience};
 use wayfix_systems::system::Stopwatch;
@@ -25,8 +25,8 @@ pub(super) struct Clock {
     told: Option<Stopwatch>,
 }
 
-impl MessageSink for LiveSink {
-    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+impl FoxgloveMessageSink for LiveSink {
+    fn message(&mut self, message: &FoxgloveMessage<'_>) -> Result<(), LogError> {
         self.pace.wait_for(message.stamp);
         if self.clock.should_tell(message.stamp) {
             self.server.broadcast_time(message.stamp.nanoseconds());

@@ -207,7 +207,7 @@ fn a_cut_image_and_a_nan_row_leave_the_rest() {
     for said in ["view_7.png:", "poses.csv:52", "poses.csv:62", "\"theta\" in rad", "\"x m\" in m"] {
         assert!(outcome.stderr.contains(said), "{said}: {}", outcome.stderr);
     }
-    assert_eq!((outcome.event("log_problem"), outcome.event("unit_assumed")), (3, 1));
+    assert_eq!((outcome.event("log_problem"), outcome.event("column_unit_assumed")), (3, 1));
     assert_eq!(outcome.metric("n_localized_views"), ((drive.frames.len() - 3) / 5) as f64);
 }
 
@@ -235,7 +235,7 @@ fn a_real_route_is_within_what_was_asked_for() {
     for seed in ["1", "2", "3", "4"] {
         let outcome = frames_run(&frames, &poses, &["--seed", seed, "--columns", "t_ms,x_cm,y_cm"]);
         // An independent program's nearest view is 3.4 cm off on average; the others are the goals of docs/cml.md.
-        assert!(outcome.metric("nearest_view_error_mean_m") <= 0.034, "{}", outcome.stdout);
+        assert!(outcome.metric("nearest_reference_error_mean_m") <= 0.034, "{}", outcome.stdout);
         let (mean, most) = (outcome.metric("error_mean_m"), outcome.metric("error_max_m"));
         assert!(mean <= 0.025 && most <= 0.15, "seed {seed}: {mean} {most}");
     }

@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::{
-    indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot},
+    indoors::{IndoorDrive, IndoorDriveParams, RetailStore, RetailStoreParams, calibrated_robot},
     random::RandomStreams,
 };
 use wayfix_sensor_log::{EncodedImage, LogFormat, Record, RecordData, Stamp};
@@ -26,7 +26,7 @@ impl Drive {
         let mut rng = ChaCha8Rng::seed_from_u64(WORLD_SEED);
         let building = RetailStore::draw(RetailStoreParams::area(), &mut rng).unwrap().building();
         let route = building.aisles().laps(LAPS, &mut rng).unwrap();
-        let params = IndoorParams { drive: calibrated_robot(&mut rng), ..IndoorParams::default() };
+        let params = IndoorDriveParams { robot: calibrated_robot(&mut rng), ..IndoorDriveParams::default() };
         let steps = IndoorDrive::new(&building, route, params, RandomStreams::new(rng)).unwrap();
         let frame = |step: wayfix_scene_sim::indoors::IndoorDriveStep| {
             let view = &step.view;

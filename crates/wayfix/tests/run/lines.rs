@@ -70,7 +70,7 @@ fn true_walls_in_the_log_are_compared_with() {
     let report: Value = serde_json::from_slice(&result.get_output().stdout).unwrap();
     let metric = |name: &str| report["metrics"][name].as_f64().unwrap_or_else(|| panic!("{report}"));
     // What each bound comes from stands in fixtures/lines.toml.
-    assert!((0.865..=1.0).contains(&metric("within_2_sigma_share")), "{report}");
+    assert!((0.865..=1.0).contains(&metric("extracted_walls_within_2_sigma_share")), "{report}");
     assert!((0.95..=1.0).contains(&metric("found_wall_share")), "{report}");
     assert!(metric("false_wall_share") < 0.1 && metric("nees_mean") > 0.0, "{report}");
 }

@@ -7,6 +7,7 @@ mod cml;
 mod cml_drive;
 mod cml_lag;
 mod lines;
+mod optimize;
 mod track;
 mod views;
 mod walls;

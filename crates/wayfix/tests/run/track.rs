@@ -116,7 +116,10 @@ fn truncated_frame_keeps_its_number_and_counts_as_lost() {
         fs::write(shot.frame(damaged), &whole[..whole.len() / 2]).unwrap();
         let outcome = shot.run_with_truth();
         assert_eq!((outcome.metric("n_frames"), outcome.metric("n_frames_with_truth")), (16.0, 16.0));
-        assert_eq!((outcome.metric("n_without_estimate"), outcome.event("frame_unreadable")), (1.0, 1));
+        assert_eq!(
+            (outcome.metric("n_frames_without_estimate"), outcome.event("frame_unreadable")),
+            (1.0, 1)
+        );
         assert!(outcome.stderr.contains(&format!("{damaged}.png")), "{}", outcome.stderr);
         // Truth and frames still belong together: 15 of 16 frames at the bound for heads.
         assert!(outcome.metric("iou_mean") > 0.6 * 15.0 / 16.0);
@@ -138,7 +141,7 @@ fn a_frame_of_another_size_is_refused_and_the_run_goes_on() {
     let small = EncodedImage::png_rgb(64, 48, &[90; 3 * 64 * 48]).unwrap();
     fs::write(shot.frame(5), &small.bytes).unwrap();
     let outcome = shot.run_with_truth();
-    assert_eq!((outcome.event("record_refused"), outcome.metric("n_without_estimate")), (1, 1.0));
+    assert_eq!((outcome.event("record_refused"), outcome.metric("n_frames_without_estimate")), (1, 1.0));
     assert_eq!(outcome.metric("n_frames_with_truth"), 16.0);
     assert!(outcome.metric("iou_mean") > 0.6 * 15.0 / 16.0);
 }
@@ -157,7 +160,11 @@ fn truth_of_other_length_and_absent_target_are_accepted() {
     shot.truth_of(&lines);
     let outcome = shot.run_with_truth();
     assert_eq!(outcome.metric("n_frames_with_truth"), 14.0);
-    assert_eq!(outcome.event("absent_and_tracked") + outcome.event("absent_and_lost"), 2);
+    assert_eq!(
+        outcome.event("target_absent_but_reported_tracked")
+            + outcome.event("target_absent_and_reported_lost"),
+        2
+    );
     assert!(outcome.stderr.contains("18 frames"), "{}", outcome.stderr);
 }
 

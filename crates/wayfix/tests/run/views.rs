@@ -51,8 +51,9 @@ fn figures_have_the_names_of_the_contract() {
     for name in ["trials", "successes", "steps_mean", "steps_to_certainty_mean"] {
         assert!(outcome.metric(name).is_finite(), "{name}");
     }
-    assert_eq!((outcome.metric("trials"), outcome.metric("n_states")), (20.0, 13.0 * 9.0));
-    let events = ["arrived", "arrived_elsewhere", "unsure"].map(|name| outcome.event(name));
+    assert_eq!((outcome.metric("trials"), outcome.metric("n_places")), (20.0, 13.0 * 9.0));
+    let events =
+        ["arrived_at_goal", "arrived_elsewhere", "ended_unsure_of_place"].map(|name| outcome.event(name));
     assert_eq!(events.iter().sum::<u64>(), 20, "every drive ends in one of three ways: {events:?}");
     assert_eq!(outcome.json()["seed"], 7);
 }
@@ -203,8 +204,8 @@ fn invalid_parameters_and_options_are_refused_by_name() {
         ("[navigator]\ngoal_confidence = 1.5", "goal_confidence"),
         ("[navigator]\ngoal_confidenec = 0.5", "goal_confidenec"),
         ("[localizer]\nkidnapping_probability = nan", "kidnapping_probability"),
-        ("[whole_scene_appearance.noise_covariance]\npooled_share = 0.0", "pooled_share"),
-        ("[whole_scene_appearance]\nlight_changes = []", "conditions"),
+        ("[scene_normalized_appearance_learning.noise_covariance]\npooled_share = 0.0", "pooled_share"),
+        ("[scene_normalized_appearance_learning]\nlight_changes = []", "conditions"),
         ("navigator = 3", "navigator"),
     ] {
         let file = scratch.file("params.toml", text);

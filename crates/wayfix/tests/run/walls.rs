@@ -34,12 +34,12 @@ fn the_robot_comes_home_and_the_walls_are_where_they_are() {
     let metrics = metrics(&["--log", log.to_str().unwrap()]);
     let figure = |name: &str| metrics[name].as_f64().unwrap_or_else(|| panic!("{name} is missing"));
     // Odometry alone is metres off after the loop; a wall is seen to a centimetre or two.
-    assert!(figure("dead_reckoning_aligned_rmse_m") > 5.0 && figure("end_error_m") < 0.1);
+    assert!(figure("dead_reckoning_aligned_rmse_m") > 5.0 && figure("end_position_error_m") < 0.1);
     assert!(figure("ate_rmse_m") < 0.3);
     // 95.45 % within two sigma, less two deviations of as many coin tosses.
     let share = 0.9545;
     let slack = 2.0 * (share * (1.0 - share) / figure("n_true_walls_found")).sqrt();
-    assert!(figure("walls_within_2_sigma") > share - slack && figure("n_true_walls_found") > 30.0);
+    assert!(figure("walls_within_2_sigma_share") > share - slack && figure("n_true_walls_found") > 30.0);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn what_makes_no_sense_is_refused_by_name() {
         ("association = 'known'", "association"),
         ("[increment_noise]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
         ("laser_pose = [0.0, inf, 0.0]", "laser_pose"),
-        ("[scan_match]\nkernel_m = 0.0", "kernel_m"),
+        ("[scan_match]\nkernel_m = 0.0", "robust_kernel_width_m"),
         ("[keyframes]\nmin_distance = -1.0", "keyframes.min_distance"),
         ("[odometry_noise_per_scan]\nheading_sigma = nan", "odometry_noise_per_scan.heading_sigma"),
     ] {

@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 
 use super::super::interpolate::GROUP_SIZE;
-use crate::{Descriptor, ViewDifferenceSample, ViewDistanceScale};
+use crate::{ViewDescriptor, ViewDifferenceModel, ViewDifferenceSample};
 
 /// Learns the scale of view differences along the path: over one step, and over the radius of a group of places.
 #[derive(Clone, Debug)]
@@ -16,9 +16,9 @@ impl<D> Default for ScaleLearner<D> {
     }
 }
 
-impl<D: Descriptor + Clone> ScaleLearner<D> {
+impl<D: ViewDescriptor + Clone> ScaleLearner<D> {
     /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest tells nothing of the scale.
-    pub(crate) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewDistanceScale) {
+    pub(crate) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewDifferenceModel) {
         if distance <= scale.step() / 2.0 && !self.recent.is_empty() {
             return;
         }

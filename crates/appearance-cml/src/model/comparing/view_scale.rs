@@ -18,8 +18,8 @@ pub struct ViewDifferenceSample {
 /// so people in single views do not change it.
 ///
 /// ```
-/// use wayfix_appearance_cml::{ViewDifferenceSample, ViewDistanceScale};
-/// let mut scale = ViewDistanceScale::default();
+/// use wayfix_appearance_cml::{ViewDifferenceSample, ViewDifferenceModel};
+/// let mut scale = ViewDifferenceModel::default();
 /// for _ in 0..20 {
 ///     scale.add_near(ViewDifferenceSample { lag: 0.1, distance: 1.0 });
 ///     scale.add_ahead(ViewDifferenceSample { lag: 0.5, distance: 1.5 });
@@ -31,7 +31,7 @@ pub struct ViewDifferenceSample {
 /// assert!(scale.match_limit(0.8) > 1.5 && scale.match_limit(0.8) < 3.0);
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct ViewDistanceScale {
+pub struct ViewDifferenceModel {
     near: VecDeque<ViewDifferenceSample>,
     ahead: VecDeque<ViewDifferenceSample>,
     far: VecDeque<f64>,
@@ -52,11 +52,11 @@ struct Fitted {
 const KEPT: usize = 255;
 /// Share of the views of far places below the sill: similar by chance. The sill needs at least one such sample.
 const SILL_QUANTILE: f64 = 0.1;
-/// Number of steps from which on a place is far, and the limit of [`ViewDistanceScale::to_meters`]: 5 m, another aisle, at four
+/// Number of steps from which on a place is far, and the limit of [`ViewDifferenceModel::to_meters`]: 5 m, another aisle, at four
 /// views per meter.
 const FAR_STEPS: f64 = 20.0;
 
-impl ViewDistanceScale {
+impl ViewDifferenceModel {
     /// A scale from its samples, as [`near`](Self::near), [`ahead`](Self::ahead) and [`far`](Self::far) give them.
     ///
     /// # Errors
@@ -203,13 +203,13 @@ mod tests {
 
     #[test]
     fn nothing_matches_before_two_views_are_known() {
-        let scale = ViewDistanceScale::default();
+        let scale = ViewDifferenceModel::default();
         assert_eq!((scale.match_limit(0.5), scale.step(), scale.to_meters(1.0)), (0.0, 0.0, 0.0));
     }
 
     #[test]
     fn occlusions_and_bad_numbers_do_not_change_the_scale() {
-        let mut scale = ViewDistanceScale::default();
+        let mut scale = ViewDifferenceModel::default();
         for k in 0..100 {
             // A person occludes every fourth view.
             scale.add_near(ViewDifferenceSample { lag: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn a_scale_is_its_samples() {
-        let mut scale = ViewDistanceScale::default();
+        let mut scale = ViewDifferenceModel::default();
         for k in 0..300 {
             let x = f64::from(k % 7);
             scale.add_near(ViewDifferenceSample { lag: 0.1, distance: 0.3 + 0.01 * x });
@@ -232,7 +232,7 @@ mod tests {
         let (near, ahead, far): (Vec<_>, Vec<_>, Vec<_>) =
             (scale.near().collect(), scale.ahead().collect(), scale.far().collect());
         assert_eq!(near.len(), KEPT, "the oldest make room");
-        assert_eq!(ViewDistanceScale::from_parts(&near, &ahead, &far), Ok(scale.clone()));
-        assert!(ViewDistanceScale::from_parts(&near, &ahead, &[f64::NAN]).is_err());
+        assert_eq!(ViewDifferenceModel::from_parts(&near, &ahead, &far), Ok(scale.clone()));
+        assert!(ViewDifferenceModel::from_parts(&near, &ahead, &[f64::NAN]).is_err());
     }
 }

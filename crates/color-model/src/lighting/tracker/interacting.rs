@@ -2,14 +2,14 @@ use std::sync::Arc;
 
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
-use wayfix_kalman::{Gpb2Filter, ImmFilter, MarkovChain, SequentialForm};
+use wayfix_kalman::{Gpb2Filter, ImmFilter, MarkovChain, SequentialUpdateAlgorithm};
 
 use super::{
     super::filter::check_seconds,
     LightingTracker,
     models::{LightMotion, seen},
 };
-use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
+use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingFilterBank};
 
 /// The interacting multiple model filter for a light that switches occasionally.
 ///
@@ -17,14 +17,14 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// it switches to one of the bank's lights and restarts at its prior. [Blom & Bar-Shalom 1988]
 #[derive(Clone)]
 pub struct ImmLightingTracker {
-    filter: ImmFilter<LightMotion, SequentialForm>,
+    filter: ImmFilter<LightMotion, SequentialUpdateAlgorithm>,
     noise: Noise,
 }
 
 /// As [`ImmLightingTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
 #[derive(Clone)]
 pub struct Gpb2LightingTracker {
-    filter: Gpb2Filter<LightMotion, SequentialForm>,
+    filter: Gpb2Filter<LightMotion, SequentialUpdateAlgorithm>,
     noise: Noise,
 }
 
@@ -40,9 +40,9 @@ impl ImmLightingTracker {
     /// mean.
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
-    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    pub fn new(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: ImmFilter::new(motions, chain, SequentialForm, &start)?, noise })
+        Ok(Self { filter: ImmFilter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
 
     /// Probabilities that the light drifts, and that it has just switched to each member of the bank.
@@ -56,9 +56,9 @@ impl Gpb2LightingTracker {
     ///
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
-    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    pub fn new(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialForm, &start)?, noise })
+        Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialUpdateAlgorithm, &start)?, noise })
     }
 
     /// As [`ImmLightingTracker::probabilities`].
@@ -75,7 +75,7 @@ struct Models {
 }
 
 impl Models {
-    fn of(bank: &LightingBank) -> Result<Self, ColorModelError> {
+    fn of(bank: &LightingFilterBank) -> Result<Self, ColorModelError> {
         let priors: Vec<_> = bank.members().iter().map(|light| light.prior().clone()).collect();
         let start = moment_matched(bank.chain().initial(), &priors).map_err(GaussianError::from)?;
         let params =

@@ -34,7 +34,7 @@ pub trait LightingTracker {
     /// Returns an error if there are more or fewer colours, or a mean is not finite.
     fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError>;
 
-    /// Current distributions of the pixels of each colour (Eq. 9), in map order.
+    /// Current distributions of the pixels of each colour, in map order. [Schulz & Fox 2004, Eq. 9]
     /// # Errors
     /// Returns an error if the belief has no mean any more.
     fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError>;

@@ -1,7 +1,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::LightingTracker;
-use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter, LightingFilterParams};
+use crate::{
+    ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingFilterBank, LightingFilterParams,
+};
 
 /// One Gaussian for whatever the light does.
 impl LightingTracker for LightingFilter {
@@ -23,9 +25,9 @@ impl LightingTracker for LightingFilter {
 }
 
 /// One Gaussian for each light; only the active one learns.
-impl LightingTracker for LightingBank {
+impl LightingTracker for LightingFilterBank {
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
-        LightingBank::predict(self, seconds)
+        LightingFilterBank::predict(self, seconds)
     }
     fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError> {
         self.update_member(self.active(), means).map(|_| ())

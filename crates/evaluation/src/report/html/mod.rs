@@ -3,17 +3,17 @@
 mod overview;
 mod run;
 
-use super::{Report, ReportSuite};
+use super::{FullReport, ReportSuite};
 use crate::plot::{DARK_PALETTE, LIGHT_PALETTE, escape};
 
 /// The page.
 ///
 /// ```
-/// use wayfix_evaluation::report::{Report, html};
-/// let page = html::render(&Report::default());
+/// use wayfix_evaluation::report::{FullReport, html};
+/// let page = html::render(&FullReport::default());
 /// assert!(page.starts_with("<!doctype html>") && !page.contains("http://") && !page.contains("https://"));
 /// ```
-pub fn render(report: &Report) -> String {
+pub fn render(report: &FullReport) -> String {
     let body: String = report.suites.iter().enumerate().map(|(k, suite)| section(suite, k)).collect();
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -72,7 +72,7 @@ mod tests {
     use crate::plot::{LinePlot, PlotSeries};
     use crate::report::{Metric, ReportRun};
 
-    fn hostile() -> Report {
+    fn hostile() -> FullReport {
         let evil = "</script><script>alert(\"1\")</script>&<img src=x onerror='x'>";
         let plot = LinePlot {
             title: evil.to_owned(),
@@ -91,7 +91,7 @@ mod tests {
             ..ReportRun::default()
         };
         let suite = ReportSuite { name: evil.to_owned(), runs: vec![run.clone(), run] };
-        Report { suites: vec![suite], commit: Some(evil.to_owned()), ..Report::default() }
+        FullReport { suites: vec![suite], commit: Some(evil.to_owned()), ..FullReport::default() }
     }
 
     #[test]

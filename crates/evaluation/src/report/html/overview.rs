@@ -1,23 +1,24 @@
-use super::super::number::duration;
-use super::super::{Metric, PassFailCount, Report, ReportRun, ReportSuite};
+use super::super::number::{duration, significant};
+use super::super::{FullReport, Metric, PassFailCount, ReportRun, ReportSuite};
 use super::{anchor, number_cell, table};
 use crate::plot::escape;
 
-/// Verdict, origin and contents.
-pub(super) fn header(report: &Report) -> String {
-    let verdict = verdict(report.tally());
-    let seconds: f64 = report.suites.iter().flat_map(|suite| &suite.runs).map(|run| run.seconds).sum();
-    let commit = report.commit.as_deref().unwrap_or("unknown");
-    let facts = [
-        ("commit", format!("<code>{}</code>", escape(commit))),
+/// Verdict, origin and contents. A run of one's own log has neither bounds nor a revision: what was found and doubted stands there instead.
+pub(super) fn header(report: &FullReport) -> String {
+    let seconds: f64 = report.runs().map(|(_, run)| run.seconds).sum();
+    let revision =
+        report.commit.as_deref().map(|commit| ("commit", format!("<code>{}</code>", escape(commit))));
+    let facts = revision.into_iter().chain([
         ("seed", report.seed.to_string()),
         ("machine", escape(&report.machine.to_string())),
         ("time of all runs", duration(seconds)),
-    ];
+    ]);
     let facts: String =
-        facts.iter().map(|(term, fact)| format!("<div><dt>{term}</dt><dd>{fact}</dd></div>\n")).collect();
+        facts.map(|(term, fact)| format!("<div><dt>{term}</dt><dd>{fact}</dd></div>\n")).collect();
     format!(
-        "<header>\n<h1>Wayfix report</h1>\n{verdict}<dl class=\"facts\">\n{facts}</dl>\n{}</header>\n",
+        "<header>\n<h1>Wayfix report</h1>\n{}{}<dl class=\"facts\">\n{facts}</dl>\n{}</header>\n",
+        verdict(report),
+        open(report),
         contents(report)
     )
 }
@@ -46,21 +47,58 @@ pub(super) fn comparison(suite: &ReportSuite, k: usize) -> String {
     table(&format!("{}: all runs", suite.name), &heads, &rows)
 }
 
-fn verdict(tally: PassFailCount) -> String {
-    let PassFailCount { passed, failed } = tally;
-    let (class, words) = match (passed, failed) {
-        (0, 0) => ("open", "No figure has a bound".to_owned()),
-        (_, 0) => ("pass", format!("All {passed} bounded figures are within their bounds")),
-        _ => ("fail", format!("{failed} of {} judged figures failed", passed + failed)),
+fn verdict(report: &FullReport) -> String {
+    let PassFailCount { passed, failed } = report.tally();
+    let paragraph =
+        |class: &str, words: &str| format!("<p class=\"verdict {class}\">{}</p>\n", escape(words));
+    let mut text = match (passed, failed) {
+        (0, 0) => paragraph("open", &found(report)),
+        (_, 0) => paragraph("pass", &format!("All {passed} bounded figures are within their bounds")),
+        _ => paragraph("fail", &format!("{failed} of {} judged figures failed", passed + failed)),
     };
-    format!("<p class=\"verdict {class}\">{words}</p>\n")
+    if let Some(first) = report.first_failure() {
+        text += &paragraph("fail", &format!("First failure: {first}"));
+    }
+    if !report.pending.is_empty() {
+        text += &paragraph("open", &format!("Not finished: {}", report.pending.join(", ")));
+    }
+    text
 }
 
-fn contents(report: &Report) -> String {
+/// What runs without bounds found and what is doubtful.
+fn found(report: &FullReport) -> String {
+    let n_doubts: usize = report.runs().map(|(_, run)| run.warnings.len()).sum();
+    let n_figures: usize = report.runs().map(|(_, run)| run.all_metrics().count()).sum();
+    match n_doubts {
+        0 => format!("{n_figures} figures, no warnings"),
+        n => format!("{n_figures} figures; {n} warnings say what is doubtful"),
+    }
+}
+
+/// Bounds that are wanted and not counted yet.
+fn open(report: &FullReport) -> String {
+    let item = |(suite, run, metric): (&str, &str, &Metric)| {
+        let wanted = metric.bound_source.as_deref().unwrap_or_default();
+        let name = format!("{suite} / {run}: {}", metric.name);
+        format!("<li>{} {}, {}</li>\n", escape(&name), significant(metric.value), escape(wanted))
+    };
+    let items: String = report.open_metrics().map(item).collect();
+    let n = report.open_metrics().count();
+    match n {
+        0 => String::new(),
+        n => format!(
+            "<details><summary>{n} open: wanted, not counted</summary>\n<ul>\n{items}</ul></details>\n"
+        ),
+    }
+}
+
+fn contents(report: &FullReport) -> String {
+    let is_judged = report.tally() != PassFailCount::default();
     let row = |(k, n, suite, run): (usize, usize, &ReportSuite, &ReportRun)| {
         let PassFailCount { passed, failed } = run.tally();
         let class = if failed > 0 { " class=\"failed\"" } else { "" };
-        let counts: String = [passed, failed].map(|count| number_cell(Some(count as f64))).concat();
+        let counts = [passed, failed].map(|count| number_cell(Some(count as f64))).concat();
+        let counts = if is_judged { counts } else { String::new() };
         let time =
             format!("<td class=\"number\" data-value=\"{}\">{}</td>", run.seconds, duration(run.seconds));
         format!(
@@ -73,7 +111,9 @@ fn contents(report: &Report) -> String {
     let runs =
         suites.flat_map(|(k, suite)| suite.runs.iter().enumerate().map(move |(n, run)| (k, n, suite, run)));
     let rows: String = runs.map(row).collect();
-    let heads = [("suite", false), ("run", false), ("passed", true), ("failed", true), ("time", true)];
+    let counts = [("passed", true), ("failed", true)];
+    let counts = if is_judged { &counts[..] } else { &[] };
+    let heads = [&[("suite", false), ("run", false)], counts, &[("time", true)]].concat();
     if rows.is_empty() { String::new() } else { table("Runs", &heads, &rows) }
 }
 

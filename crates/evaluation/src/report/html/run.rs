@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use super::super::number::{duration, significant};
-use super::super::{ConfidenceInterval, Metric, ReportRun};
+use super::super::{ConfidenceInterval, Metric, ReportRun, explanation};
 use super::{number_cell, table};
 use crate::plot::{SvgPlot, escape};
 
@@ -59,8 +59,10 @@ fn metrics(run: &ReportRun) -> String {
 
 fn metric_row(metric: &Metric, compared: bool) -> String {
     let class = if metric.passes() { "" } else { " class=\"failed\"" };
+    let title = explanation(&metric.name).map(|meaning| format!(" title=\"{}\"", escape(meaning)));
     format!(
-        "<tr{class}><th scope=\"row\"><code>{}</code></th>{}<td>{}</td>{}</tr>\n",
+        "<tr{class}><th scope=\"row\"><code{}>{}</code></th>{}<td>{}</td>{}</tr>\n",
+        title.unwrap_or_default(),
         escape(&metric.name),
         value_cell(metric),
         escape(&metric.unit),

@@ -1,17 +1,25 @@
-use anyhow::Result;
+use anyhow::{Context, Result};
 use serde::Deserialize;
+use wayfix_sensor_log::LogOpenOptions;
 
 use super::super::PlannedJob;
 use crate::cml::{self as experiments, CmlExperimentSetup};
 use wayfix_evaluation::report::ReportRun;
+use wayfix_systems::{
+    cml::{
+        self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
+        CmlTask, PanoramaMap, ViewDescriptorReader,
+    },
+    system::{RunStep, System},
+};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
     experiment: Experiment,
-    /// Size of the full experiment.
-    full: CmlExperimentSetup,
+    /// Size of the full experiment; none for a stored log.
+    full: Option<CmlExperimentSetup>,
     /// The same with `--quick`, where that is something else.
     quick: Option<CmlExperimentSetup>,
 }
@@ -19,6 +27,8 @@ struct Settings {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Experiment {
+    /// A stored log: an empty map, a known start.
+    Log,
     /// Table 1.
     ChangingLab,
     /// Fig. 4.
@@ -42,8 +52,8 @@ enum Experiment {
 /// An experiment with the localizer.
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
-    let setup = settings.quick.filter(|_| job.options.quick).unwrap_or(settings.full);
     let experiment = match settings.experiment {
+        Experiment::Log => return stored_log(job),
         Experiment::ChangingLab => experiments::changing_lab,
         Experiment::Laps => experiments::laps,
         Experiment::FourWeeks => experiments::four_weeks,
@@ -54,5 +64,30 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         Experiment::Crowded => experiments::crowded,
         Experiment::StepTime => experiments::step_time,
     };
-    experiment(&setup, job.options.seed)
+    let setup = settings.quick.filter(|_| job.options.quick).or(settings.full);
+    experiment(&setup.context("give `full`, the size of the experiment")?, job.options.seed)
+}
+
+/// Builds the map from nothing while it localizes.
+fn stored_log(job: &PlannedJob<'_>) -> Result<ReportRun> {
+    let log = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?;
+    let (name, path) = job.estimates_file();
+    let mut estimates = CmlEstimateRecorder::create(&path, log.meta().first_format())?;
+    let (records, read) = log.read_all();
+    let mut params = CmlParams::default();
+    let plan = CmlRunPlan::of_log(records, 0, &mut params, &CameraViewGeometry::default())?;
+    let start = cml::first_true_pose(&plan.records).context("a log without truth")?;
+    let reader = ViewDescriptorReader::new(params.panorama_descriptor, None);
+    let mut run = cml::run(
+        CmlSystem::new(&params, reader, PanoramaMap::default())?,
+        &plan,
+        CmlTask::ConcurrentMapBuilding,
+        CmlStartPose::Exactly(start),
+        &params,
+        job.options.seed,
+        |RunStep { system, record, .. }| estimates.observe(record, system),
+    )?;
+    estimates.finish()?;
+    run.system.events().add("log_problem", read.n_problems());
+    Ok(ReportRun { log: Some(name), figures: cml::plots(&run)?, ..cml::summarize(&mut run) })
 }

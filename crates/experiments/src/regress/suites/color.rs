@@ -1,11 +1,14 @@
 use std::{ops::Range, path::PathBuf, sync::Arc};
 
-use crate::color as experiments;
+use crate::color::{self as experiments, TrainingHalls};
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_color_map::ColorMap;
-use wayfix_scene_sim::{Scenario, ScenarioParams, league::LampSetting};
-use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_scene_sim::{
+    Scenario, ScenarioParams,
+    league::{ExposureMode, LampSetting, LeagueParams},
+};
+use wayfix_sensor_log::{LogOpenOptions, Record};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
@@ -31,6 +34,8 @@ struct Settings {
     as_published: bool,
     /// Number of kinds of light to learn priors for, one Gaussian each; without it the built-in priors, of two, are used.
     lights: Option<usize>,
+    /// Seconds of the log that run with `--quick`; all of it if omitted.
+    quick_s: Option<f64>,
     /// Number of halls, for experiments over many.
     #[serde(default = "hundred")]
     n_seeds: u64,
@@ -61,10 +66,19 @@ enum Experiment {
     WithheldHallsDark,
     /// The same in bright light.
     WithheldHallsBright,
+    /// The same with a camera that sets exposure and white balance for every picture, and pale paints.
+    WithheldHallsAutomatic,
     /// Frame time against the number of particles.
     FrameTime,
     /// Recorded images of the middle-size league.
     Venues,
+}
+
+/// Paints half as far from grey as those of the league: chosen before any run, as a halving.
+const PALE_CHROMA: f64 = 0.5;
+
+fn under(lighting: LampSetting) -> LeagueParams {
+    LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() }
 }
 
 fn field() -> PathBuf {
@@ -93,32 +107,57 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     if settings.as_published {
         params.set_published();
     }
-    let learned = settings.lights.map_or_else(priors::built_in, priors::learn_from_simulation)?;
+    let learned =
+        settings.lights.map_or_else(priors::built_in, |k| TrainingHalls::default().learn_priors(k))?;
     let seed = job.options.seed;
     let bank = priors::bank(&learned, &params)?;
     let seeds = settings.seeds(job);
     match settings.experiment {
-        Experiment::Localize => localize(job, map, &params),
-        Experiment::Withheld => experiments::withheld(&records(job)?, &map, &learned, &params, seed),
+        Experiment::Localize => localize(job, settings.quick_s, map, &params),
+        Experiment::Withheld => {
+            experiments::withheld(&records(job, settings.quick_s)?, &map, &learned, &params, seed)
+        }
         Experiment::Switching => {
-            let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
-            experiments::switching(&records(job)?, &switches(job), &map, &bank, &single, &params, seed)
+            let single = priors::bank(&TrainingHalls::default().learn_priors(1)?, &params)?;
+            experiments::switching(
+                &records(job, settings.quick_s)?,
+                &switches(job),
+                &map,
+                &bank,
+                &single,
+                &params,
+                seed,
+            )
         }
         Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
         Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
         Experiment::OtherHallsDark => {
-            experiments::other_halls(seeds, LampSetting::Dark, &map, &bank, &params)
+            experiments::other_halls(seeds, &under(LampSetting::Dark), &map, &bank, &params)
         }
         Experiment::OtherHallsBright => {
-            experiments::other_halls(seeds, LampSetting::Bright, &map, &bank, &params)
+            experiments::other_halls(seeds, &under(LampSetting::Bright), &map, &bank, &params)
         }
         Experiment::WithheldHallsDark => {
-            experiments::withheld_in_halls(seeds, LampSetting::Dark, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, &under(LampSetting::Dark), &map, &learned, &params)
         }
         Experiment::WithheldHallsBright => {
-            experiments::withheld_in_halls(seeds, LampSetting::Bright, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, &under(LampSetting::Bright), &map, &learned, &params)
         }
-        Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
+        Experiment::WithheldHallsAutomatic => {
+            let halls = TrainingHalls {
+                exposure_mode: ExposureMode::Automatic,
+                paint_chroma: PALE_CHROMA,
+                ..TrainingHalls::default()
+            };
+            let drive = LeagueParams {
+                exposure_mode: halls.exposure_mode,
+                paint_chroma: halls.paint_chroma,
+                ..LeagueParams::default()
+            };
+            let learned = halls.learn_priors(settings.lights.unwrap_or(2))?;
+            experiments::withheld_in_halls(seeds, &drive, &map, &learned, &params)
+        }
+        Experiment::FrameTime => experiments::frame_time(&records(job, None)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
     }
 }
@@ -133,8 +172,17 @@ impl Settings {
     }
 }
 
-fn records(job: &PlannedJob<'_>) -> Result<Vec<Record>> {
-    Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
+fn records(job: &PlannedJob<'_>, quick_s: Option<f64>) -> Result<Vec<Record>> {
+    let (records, _) = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all();
+    Ok(first_seconds(records, quick_s.filter(|_| job.options.quick)))
+}
+
+/// The records of the first `seconds`, or all.
+fn first_seconds(mut records: Vec<Record>, seconds: Option<f64>) -> Vec<Record> {
+    if let (Some(seconds), Some(start)) = (seconds, records.first().map(|record| record.stamp)) {
+        records.retain(|record| record.stamp.seconds_since(start) <= seconds);
+    }
+    records
 }
 
 /// The frames at which the light of a stored log changes.
@@ -148,11 +196,17 @@ fn switches(job: &PlannedJob<'_>) -> Vec<usize> {
     }
 }
 
-fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<ReportRun> {
-    let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
+fn localize(
+    job: &PlannedJob<'_>,
+    quick_s: Option<f64>,
+    map: Arc<ColorMap>,
+    params: &ColorSystemParams,
+) -> Result<ReportRun> {
+    let log = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?;
     let (name, path) = job.estimates_file();
     let mut estimates = ColorEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
+    let records = first_seconds(records, quick_s.filter(|_| job.options.quick));
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleSnapshots::new(color::n_images(&records));
     let mut run = color::run(
@@ -170,7 +224,7 @@ fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::plots(&run)?;
-    figures.push(particles.draw(&run)?);
+    figures.extend(particles.draw(&run)?);
     figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
     Ok(ReportRun { log: Some(name), figures, ..color::summarize(&mut run) })
 }

@@ -1,10 +1,11 @@
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_scene_sim::monobot::MonobotParams;
+use wayfix_sensor_log::LogOpenOptions;
 
 use super::super::PlannedJob;
 use crate::{
-    consistency::{self, CorridorLaps},
+    consistency::{self, ConsistencyMonteCarlo, CorridorLaps},
     monobot::{self, WorldReference},
 };
 use wayfix_evaluation::report::{Metric, ReportRun};
@@ -29,6 +30,8 @@ enum Settings {
         #[serde(flatten)]
         noise: Noise,
     },
+    /// A stored log through all kinds of filters; `laps` has its noise.
+    Log { laps: CorridorLaps },
     /// Laps of a loop in the plane, through all kinds of filters.
     Laps { n_runs: u32, n_runs_quick: u32, laps: CorridorLaps },
 }
@@ -36,9 +39,9 @@ enum Settings {
 /// Noise of the monobot: the paper states none.
 #[derive(Clone, Copy, Debug, Deserialize)]
 struct Noise {
-    motion_noise: f64,
-    range_noise: f64,
-    external_sigma_m: f64,
+    motion_sigma_share: f64,
+    range_sigma_share: f64,
+    external_position_sigma_m: f64,
 }
 
 /// The paper's one-dimensional experiments, and laps in the plane.
@@ -50,8 +53,13 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
             let figures = all.drives.first().map(monobot::plots).transpose()?.unwrap_or_default();
             Ok(ReportRun { metrics: all.metrics(), figures, ..ReportRun::default() })
         }
+        Settings::Log { laps } => {
+            let (records, _) = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all();
+            report(&consistency::over_logs(&laps, 1, |_| Ok(records.clone()))?)
+        }
         Settings::Laps { n_runs, n_runs_quick, laps } => {
-            run_laps(job, &laps, if job.options.quick { n_runs_quick } else { n_runs })
+            let n_runs = if job.options.quick { n_runs_quick } else { n_runs };
+            report(&consistency::monte_carlo(&laps, n_runs, job.options.seed)?)
         }
         Settings::Landmarks { n_landmarks, n_runs, noise } => landmarks(job, &n_landmarks, n_runs, noise),
     }
@@ -80,26 +88,31 @@ fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: No
     let mut metrics: Vec<Metric> = Vec::new();
     for n in n_landmarks {
         let all = monobot::monte_carlo(&noise.params(*n), WorldReference::None, n_runs, job.options.seed)?;
-        metrics.push(Metric::new(format!("end_landmark_error_rms_m_n{n}"), all.end_rms(), "m"));
+        metrics.push(Metric::new(format!("landmark_error_rms_at_end_m_n{n}"), all.end_rms(), "m"));
     }
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
-    metrics.push(Metric::new("landmark_rms_ratio", fall, ""));
+    metrics.push(Metric::new("landmark_error_rms_ratio_fewest_over_most_landmarks", fall, ""));
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
-fn run_laps(job: &PlannedJob<'_>, laps: &CorridorLaps, n_runs: u32) -> Result<ReportRun> {
-    let all = consistency::monte_carlo(laps, n_runs, job.options.seed)?;
+fn report(all: &ConsistencyMonteCarlo) -> Result<ReportRun> {
     let note = format!(
-        "{n_runs} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
-        all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
+        "{} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
+        all.n_runs, all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
     );
-    let figures = vec![consistency::picture(&all)?];
+    let figures = vec![consistency::picture(all)?];
     Ok(ReportRun { metrics: all.metrics(), figures, notes: vec![note], ..ReportRun::default() })
 }
 
 impl Noise {
     fn params(self, n_landmarks: usize) -> MonobotParams {
-        let Self { motion_noise, range_noise, external_sigma_m } = self;
-        MonobotParams { n_landmarks, motion_noise, range_noise, external_sigma_m, ..MonobotParams::default() }
+        let Self { motion_sigma_share, range_sigma_share, external_position_sigma_m } = self;
+        MonobotParams {
+            n_landmarks,
+            motion_sigma_share,
+            range_sigma_share,
+            external_position_sigma_m,
+            ..MonobotParams::default()
+        }
     }
 }

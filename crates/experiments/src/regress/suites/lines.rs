@@ -1,13 +1,13 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 use wayfix_line_extract::LineExtractionParams;
-use wayfix_sensor_log::OpenOptions;
+use wayfix_sensor_log::LogOpenOptions;
 
 use super::super::PlannedJob;
 use crate::simplification::simplification;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    lines::{self, LineEstimateRecorder, LineSystem},
+    lines::{self, LineEstimateRecorder, LineExtractionSystem},
     system::{RunStep, System, drive},
 };
 
@@ -19,24 +19,24 @@ struct Settings {
     #[serde(default)]
     params: LineExtractionParams,
     /// Number of random chains to simplify, instead of a log.
-    n_chains: Option<u32>,
+    n_polylines: Option<u32>,
 }
 
 /// The walls in the scans of a log, or chains made short.
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
-    match settings.n_chains {
-        Some(n_chains) => simplification(n_chains, job.options.seed),
+    match settings.n_polylines {
+        Some(n_polylines) => simplification(n_polylines, job.options.seed),
         None => walls(job, settings.params),
     }
 }
 
 fn walls(job: &PlannedJob<'_>, params: LineExtractionParams) -> Result<ReportRun> {
-    let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
+    let log = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?;
     let (name, path) = job.estimates_file();
     let mut walls = LineEstimateRecorder::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
-    let mut system = LineSystem::new(params)?;
+    let mut system = LineExtractionSystem::new(params)?;
     drive(&mut system, &records, |RunStep { system, record, .. }| walls.observe(record, system));
     walls.finish()?;
     ensure!(system.n_scans() > 0, "no laser scan in the log");

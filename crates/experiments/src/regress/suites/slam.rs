@@ -2,9 +2,10 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Deserialize;
-use wayfix_sensor_log::{OpenOptions, read_relations};
+use wayfix_sensor_log::{LogOpenOptions, read_relations};
 
 use super::super::PlannedJob;
+use crate::thinned_positions::ThinnedPositions;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
@@ -28,6 +29,8 @@ struct Settings {
     /// Whether the landmarks are walls in laser scans.
     #[serde(default)]
     walls: bool,
+    /// Positions of the log as measurements of an external sensor.
+    external: Option<ThinnedPositions>,
     /// File of known relations between poses, relative to the folder of recordings.
     relations: Option<PathBuf>,
 }
@@ -38,7 +41,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     if settings.walls {
         return with_walls(job, &settings);
     }
-    let options = OpenOptions { robot: settings.robot, ..OpenOptions::default() };
+    let options = LogOpenOptions { robot: settings.robot, ..LogOpenOptions::default() };
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
     let profile = settings.profile.unwrap_or(RobotProfile::of_log(log.meta()));
     let mut params = match &settings.params {
@@ -49,7 +52,11 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 
     let (name, path) = job.estimates_file();
     let mut estimates = SlamEstimateRecorder::create(&path, log.meta().first_format())?;
-    let (records, read) = log.read_all();
+    let (mut records, read) = log.read_all();
+    if let Some(external) = settings.external {
+        params.external = external.params();
+        records = external.in_log(records, job.options.seed);
+    }
     let observe =
         |RunStep { system, record, .. }: RunStep<'_, PointSystem>| estimates.observe(record, system);
     let mut slam = points::run(&records, &params, observe)?;
@@ -60,11 +67,15 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 
 /// A log of laser scans through EKF-SLAM with walls.
 fn with_walls(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
-    let params = match &settings.params {
+    let mut params = match &settings.params {
         Some(file) => wayfix_systems::settings::from_toml(&job.read(file)?)?,
         None => WallSlamParams::default(),
     };
-    let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+    let (mut records, read) = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all();
+    if let Some(external) = settings.external {
+        params.external = external.params();
+        records = external.in_log(records, job.options.seed);
+    }
     let mut slam = walls::run(&records, &params, |_| ())?;
     slam.events().add("log_problem", read.n_problems());
     let mut run = ReportRun { figures: walls::plots(&slam)?, ..walls::summarize(&mut slam) };

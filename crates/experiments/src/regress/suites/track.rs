@@ -4,13 +4,17 @@ use crate::films;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
-use wayfix_sensor_log::{LogFormat, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::track::{
-    self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+use wayfix_systems::{
+    system::RunStep,
+    track::{
+        self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+    },
 };
+use wayfix_visual_tracking::ColorSpace;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -33,7 +37,14 @@ struct Settings {
     /// The method as published, without the additions.
     #[serde(default)]
     as_published: bool,
-    /// True boxes of a recording, relative to the folder given by `--data`.
+    /// Whether the contour tracker learns its colour dynamics from a training film.
+    #[serde(default)]
+    learns_dynamics: bool,
+    /// Space of the contour tracker's colours, unless it is the default.
+    color_space: Option<ColorSpace>,
+    /// Largest rate, in degrees a second, of a pan/tilt head that turns a part of the film's view after the target.
+    pan_tilt_rate_deg_s: Option<f64>,
+    /// True boxes: of a recording relative to the folder given by `--data`, of a stored log beside the plan.
     truth: Option<PathBuf>,
 }
 
@@ -51,7 +62,9 @@ fn fifty() -> usize {
 
 impl Settings {
     fn params(&self) -> TrackParams {
-        if self.as_published { TrackParams::as_published() } else { TrackParams::default() }
+        let mut params = if self.as_published { TrackParams::as_published() } else { TrackParams::default() };
+        params.contour.color_space = self.color_space.unwrap_or(params.contour.color_space);
+        params
     }
 }
 
@@ -72,23 +85,32 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
         (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);
     }
     let first = 1000 * job.options.seed;
+    if let Some(rate) = settings.pan_tilt_rate_deg_s {
+        return films::active(&film, first..first + n_seeds, rate.to_radians());
+    }
+    if settings.learns_dynamics {
+        return films::learned(&film, first..first + n_seeds, &settings.params().contour);
+    }
     films::table(&film, first..first + n_seeds, &settings.methods, &settings.params())
 }
 
 fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
-    let options = OpenOptions { format: Some(LogFormat::Images), ..OpenOptions::default() };
+    let is_stored = job.planned.log.is_some();
+    let format = if is_stored { LogFormat::Mcap } else { LogFormat::Images };
+    let options = LogOpenOptions { format: Some(format), ..LogOpenOptions::default() };
     let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
     let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
-    let truth = TrueBoxes::read(&job.recording(truth)?)?;
+    let truth = TrueBoxes::read(&if is_stored { job.beside_plan(truth) } else { job.recording(truth)? })?;
     let method = *settings.methods.first().context("give `methods`")?;
-    let rate_hz = Some(options.frame_rate_hz);
+    let rate_hz = (!is_stored).then_some(options.frame_rate_hz);
     let params = settings.params();
     let setup = TrackerConfig { method, truth, rate_hz, params, ..TrackerConfig::default() };
     let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates_file();
     let mut estimates =
         TrackEstimateRecorder::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
-    let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
+    let mut run =
+        track::run(system, &mut log, |RunStep { system, record, .. }| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
     Ok(ReportRun { log: Some(name), figures: track::plots(&run.run_history)?, ..track::summarize(&mut run) })
 }

@@ -7,7 +7,7 @@ use super::{
     rotation::{Rotation, triangle, triangle_of_sum, turn_columns},
 };
 use crate::{
-    FilterForm, Innovation,
+    Innovation, KalmanAlgorithm,
     algebra::transport::transport,
     check,
     error::Checked,
@@ -24,9 +24,9 @@ use crate::{
 ///
 /// Nothing is subtracted, so variances cannot become negative, and half the digits suffice. [Kailath et al. 2000, §12.3]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SquareRootForm;
+pub struct SquareRootKalmanAlgorithm;
 
-impl<X: Manifold> FilterForm<X> for SquareRootForm
+impl<X: Manifold> KalmanAlgorithm<X> for SquareRootKalmanAlgorithm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

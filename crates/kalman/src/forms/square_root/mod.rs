@@ -5,4 +5,4 @@ mod form;
 mod rotation;
 
 pub use belief::FactoredGaussian;
-pub use form::SquareRootForm;
+pub use form::SquareRootKalmanAlgorithm;

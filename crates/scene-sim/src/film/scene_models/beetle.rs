@@ -20,7 +20,7 @@ const LEG: Color = [0.035, 0.028, 0.022];
 const GAIT_HZ: f64 = 2.5;
 
 /// A beetle that walks over the ground, seen from above: wing cases with spots, thorax and head; its legs and feelers are not part of the
-/// target. [Andrade-Cetto, Sect. 3.4, third sequence]
+/// target. [Andrade-Cetto 2005, Sec. 3.4, third sequence]
 pub(super) struct Beetle {
     ground: Ground,
     daylight: Daylight,

@@ -14,7 +14,7 @@ const CALM_S: f64 = 2.2;
 const CHANGE_S: f64 = 0.45;
 const CHANGE: f64 = 0.17;
 
-/// Circles that move about and change their colours at random; the target is in front. [Andrade-Cetto, Sect. 3.4, first sequence]
+/// Circles that move about and change their colours at random; the target is in front. [Andrade-Cetto 2005, Sec. 3.4, first sequence]
 pub(super) struct Circles {
     wall: Noise,
     /// The first is the target.

@@ -18,7 +18,7 @@ const BULB: Color = [1.0, 0.80, 0.56];
 const DAY: Color = [0.80, 0.94, 1.05];
 
 /// A head that turns about while its owner walks through a room and the light changes from a lamp to daylight and back; the target is skin
-/// and hair, without neck and shirt. [Andrade-Cetto, Sect. 3.2]
+/// and hair, without neck and shirt. [Andrade-Cetto 2005, Sec. 3.2, Fig. 9]
 pub(super) struct Head {
     room: Ground,
     path: [SineSum; 2],

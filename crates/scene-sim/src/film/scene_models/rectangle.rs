@@ -28,7 +28,7 @@ const LAMP_POWER: f64 = 0.26;
 const GLOSS: f64 = 0.10;
 const SHARPNESS: i32 = 12;
 
-/// A reddish rectangle, Lambertian but for a little gloss, that revolves round a lamp. [Andrade-Cetto, Fig. 8; Sect. 3.4, second sequence]
+/// A reddish rectangle, Lambertian but for a little gloss, that revolves round a lamp. [Andrade-Cetto 2005, Fig. 8; Sec. 3.4, second sequence]
 pub(super) struct Rectangle {
     wall: Canvas,
     start: f64,

@@ -23,7 +23,7 @@ const NECK_REACH: f64 = 0.95;
 const GROWTH: f64 = 2.2;
 const UMBILICUS: (f64, f64) = (-0.08, -0.05);
 
-/// A snail in clutter: the target is its shell; a neck of nearly the same colour extends and retracts. [Andrade-Cetto, Fig. 12; Sect. 3.4,
+/// A snail in clutter: the target is its shell; a neck of nearly the same colour extends and retracts. [Andrade-Cetto 2005, Fig. 12; Sec. 3.4,
 /// fourth sequence]
 pub(super) struct Snail {
     ground: Ground,

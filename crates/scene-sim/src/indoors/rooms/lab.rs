@@ -11,7 +11,7 @@ use super::decor::{curtain, outside, stand, wall};
 use crate::random::deviate::{chance, uniform};
 use crate::{SimulationError, check};
 
-/// Extent along x and y, metres. [Gross et al. 2004, Table 1]
+/// Extent along x and y, metres. [Gross et al. 2005, Table 1]
 const SIZE_M: [f64; 2] = [15.0, 10.0];
 const CEILING_M: f64 = 3.0;
 /// Windows along the wall of high y, and their lower and upper edge, m.

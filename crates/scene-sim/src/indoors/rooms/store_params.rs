@@ -30,7 +30,7 @@ pub struct RetailStoreParams {
 }
 
 impl RetailStoreParams {
-    /// The home store of 50 m × 80 m. [Gross et al. 2004, Sec. 3]
+    /// The home store of 50 m × 80 m. [Gross et al. 2005, Sec. 3]
     pub fn home_store() -> Self {
         Self {
             length_m: 80.0,
@@ -44,7 +44,7 @@ impl RetailStoreParams {
         }
     }
 
-    /// A part of it, 25 m × 10 m. [Gross et al. 2004, Fig. 4]
+    /// A part of it, 25 m × 10 m. [Gross et al. 2005, Fig. 4]
     pub fn area() -> Self {
         Self { length_m: 25.0, width_m: 10.0, n_blocks: 2, n_departments: 3, ..Self::home_store() }
     }

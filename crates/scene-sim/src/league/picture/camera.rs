@@ -10,12 +10,14 @@ pub struct CameraParams {
     pub camera: PinholeCamera,
     /// Exposure time, ms. Default 10.
     pub exposure_ms: u32,
+    /// What sets gain and white balance. Default [`ExposureMode::Manual`].
+    pub exposure_mode: ExposureMode,
     /// Signal, as a share of full scale, of radiance 1. Default 1.
     pub gain: f64,
     /// Gains of the three channels. Default 1.
     pub white_balance: LinearRgb,
     /// Drift of the automatic white balance: σ of the logarithm of the gains of red and blue. Default 0.02.
-    pub white_balance_drift: f64,
+    pub white_balance_drift_sigma: f64,
     /// Correlation time of that drift, seconds. Default 20.
     pub white_balance_correlation_s: f64,
     /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
@@ -23,11 +25,11 @@ pub struct CameraParams {
     /// Share of each channel that comes from each of the others. Default 0.05.
     pub crosstalk: f64,
     /// Stray light: share of the image mean added to every pixel. Default 0.015.
-    pub flare: f64,
+    pub stray_light: f64,
     /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 4000.
-    pub full_well: f64,
+    pub full_well_electrons: f64,
     /// Read noise, σ as a share of full scale. Default 0.003.
-    pub read_noise: f64,
+    pub read_noise_sigma: f64,
     /// Exponent of the response, signal to grey value. Default 0.5.
     pub gamma: f64,
     /// Which pixels share their colour. Default [`ChromaSubsampling::Pairs`].
@@ -44,8 +46,16 @@ pub enum ChromaSubsampling {
     /// Two beside each other (4:2:2).
     #[default]
     Pairs,
-    /// Two by two (4:2:0).
-    Squares,
+}
+
+/// What sets gain and white balance of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ExposureMode {
+    /// [`gain`](CameraParams::gain) and [`white_balance`](CameraParams::white_balance).
+    #[default]
+    Manual,
+    /// Each picture: its mean becomes 18 % grey, by average metering [ISO 2720] and the grey-world assumption [Buchsbaum 1980].
+    Automatic,
 }
 
 impl CameraParams {
@@ -54,15 +64,16 @@ impl CameraParams {
         Self {
             camera,
             exposure_ms: 10,
+            exposure_mode: ExposureMode::default(),
             gain: 1.0,
             white_balance: LinearRgb::repeat(1.0),
-            white_balance_drift: 0.02,
+            white_balance_drift_sigma: 0.02,
             white_balance_correlation_s: 20.0,
             vignetting: LinearRgb::new(0.58, 0.50, 0.18),
             crosstalk: 0.05,
-            flare: 0.015,
-            full_well: 4000.0,
-            read_noise: 0.003,
+            stray_light: 0.015,
+            full_well_electrons: 4000.0,
+            read_noise_sigma: 0.003,
             gamma: 0.5,
             chroma_subsampling: ChromaSubsampling::default(),
             jpeg_quality: 88,
@@ -92,13 +103,13 @@ impl CameraParams {
         check::at_most("exposure (ms)", f64::from(self.exposure_ms), 1000.0, "at most 1000")?;
         check::not_negative("gain", self.gain)?;
         self.white_balance.iter().try_for_each(|&gain| check::not_negative("white balance", gain))?;
-        check::not_negative("drift of the white balance", self.white_balance_drift)?;
+        check::not_negative("drift of the white balance", self.white_balance_drift_sigma)?;
         check::not_negative("correlation time of the white balance (s)", self.white_balance_correlation_s)?;
         self.vignetting.iter().try_for_each(|&loss| check::share("vignetting", loss))?;
         check::share("crosstalk", self.crosstalk)?;
-        check::share("flare", self.flare)?;
-        check::positive("electrons at full scale", self.full_well)?;
-        check::not_negative("read noise", self.read_noise)?;
+        check::share("stray_light", self.stray_light)?;
+        check::positive("electrons at full scale", self.full_well_electrons)?;
+        check::not_negative("read noise", self.read_noise_sigma)?;
         check::positive("gamma", self.gamma)?;
         check::positive("quality of the JPEG files", f64::from(self.jpeg_quality))?;
         check::at_most("quality of the JPEG files", f64::from(self.jpeg_quality), 100.0, "at most 100")

@@ -6,17 +6,17 @@ use super::exposure::Exposure;
 use super::image_pipeline::ImagePipeline;
 use super::scene::LeagueScene;
 use crate::SimulationError;
-use crate::league::LinearRgb;
+use crate::league::{LinearRgb, yuv};
 
 /// Takes pictures with one camera.
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
-/// use wayfix_scene_sim::league::{CameraParams, HallBackdrop, Lamps, CameraSimulator, LinearRgb, LeagueScene, SceneSurface, field_map};
+/// use wayfix_scene_sim::league::{CameraParams, HallBackdrop, LampLight, CameraSimulator, LinearRgb, LeagueScene, SceneSurface, field_map};
 /// use wayfix_scene_sim::space;
 ///
-/// let light = Lamps { ambient: LinearRgb::repeat(0.8), ..Lamps::default() };
+/// let light = LampLight { ambient: LinearRgb::repeat(0.8), ..LampLight::default() };
 /// let paints = [LinearRgb::new(0.1, 0.4, 0.1); 5];
 /// let surfaces = SceneSurface::of_map(&field_map()?);
 /// let scene = LeagueScene { surfaces, paints: &paints, light: &light, backdrop: &HallBackdrop::default() };
@@ -48,6 +48,14 @@ pub struct LeaguePicture {
     /// during the whole exposure comes from one map colour. Rays pass through a square 1.2 pixels wide, four per pixel and spread over the
     /// exposure. Chroma that is shared with a neighbour does not count as mixed.
     pub labels: Vec<u8>,
+}
+
+impl LeaguePicture {
+    /// Y, U, V of each pixel: BT.601 in full range, U and V about 0, not rounded.
+    pub fn yuv(&self) -> impl Iterator<Item = LinearRgb> {
+        let pixels = self.rgb.chunks_exact(3);
+        pixels.map(|rgb| yuv::from_rgb(&LinearRgb::from_iterator(rgb.iter().map(|&byte| f64::from(byte)))))
+    }
 }
 
 impl CameraSimulator {

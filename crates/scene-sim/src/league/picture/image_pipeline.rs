@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use super::camera::{CameraParams, ChromaSubsampling};
+use super::camera::{CameraParams, ChromaSubsampling, ExposureMode};
 use crate::league::{LinearRgb, yuv};
 use crate::random::deviate::quick_normal;
 
@@ -29,12 +29,19 @@ impl ImagePipeline {
         balance: &LinearRgb,
         rng: &mut R,
     ) -> Vec<u8> {
-        let stray = light.iter().sum::<LinearRgb>() * (self.params.flare / light.len().max(1) as f64);
-        let gains = self.params.white_balance.component_mul(balance) * self.params.gain;
-        let grey = light.iter().zip(&self.lens).map(|(light, lens)| {
-            let seen = self.mixed(&(light + stray).component_mul(lens));
-            seen.component_mul(&gains).map(|signal| self.grey_value(signal, rng))
-        });
+        let stray = light.iter().sum::<LinearRgb>() * (self.params.stray_light / light.len().max(1) as f64);
+        let seen = light
+            .iter()
+            .zip(&self.lens)
+            .map(|(light, lens)| self.mixed(&(light + stray).component_mul(lens)));
+        let gains = match self.params.exposure_mode {
+            ExposureMode::Manual => self.params.white_balance * self.params.gain,
+            ExposureMode::Automatic => {
+                automatic_gains(seen.clone().sum::<LinearRgb>() / light.len().max(1) as f64)
+            }
+        };
+        let gains = gains.component_mul(balance);
+        let grey = seen.map(|seen| seen.component_mul(&gains).map(|signal| self.grey_value(signal, rng)));
         self.share_chroma(grey.map(|rgb| yuv::from_rgb(&rgb)).collect())
     }
 
@@ -45,8 +52,8 @@ impl ImagePipeline {
     }
 
     fn grey_value<R: Rng + ?Sized>(&self, signal: f64, rng: &mut R) -> f64 {
-        let read = self.params.read_noise;
-        let sigma = (signal / self.params.full_well + read * read).sqrt();
+        let read = self.params.read_noise_sigma;
+        let sigma = (signal / self.params.full_well_electrons + read * read).sqrt();
         let noisy = (signal + sigma * quick_normal(rng)).clamp(0.0, 1.0);
         self.response[(noisy * STEPS as f64) as usize]
     }
@@ -54,29 +61,24 @@ impl ImagePipeline {
     /// Averages U and V over the pixels that share them, and makes bytes.
     fn share_chroma(&self, yuv: Vec<LinearRgb>) -> Vec<u8> {
         let width = self.params.camera.width() as usize;
-        let (across, down) = match self.params.chroma_subsampling {
-            ChromaSubsampling::Each => (1, 1),
-            ChromaSubsampling::Pairs => (2, 1),
-            ChromaSubsampling::Squares => (2, 2),
+        let across = match self.params.chroma_subsampling {
+            ChromaSubsampling::Each => 1,
+            ChromaSubsampling::Pairs => 2,
         };
         let mut bytes = Vec::with_capacity(3 * yuv.len());
-        for (pixel, own) in yuv.iter().enumerate() {
-            let (column, row) = (pixel % width, pixel / width);
-            let (left, top) = (column - column % across, row - row % down);
-            let mut sum = LinearRgb::zeros();
-            let mut count = 0.0;
-            for y in top..top + down {
-                for x in left..(left + across).min(width) {
-                    if let Some(other) = yuv.get(y * width + x) {
-                        sum += other;
-                        count += 1.0;
-                    }
-                }
-            }
-            bytes.extend(yuv::to_rgb(own.x, sum.y / count, sum.z / count));
+        for group in yuv.chunks(width).flat_map(|row| row.chunks(across)) {
+            let mean = group.iter().sum::<LinearRgb>() / group.len() as f64;
+            bytes.extend(group.iter().flat_map(|own| yuv::to_rgb(own.x, mean.y, mean.z)));
         }
         bytes
     }
+}
+
+/// Average metering and grey world: the mean of every channel becomes the grey card's.
+fn automatic_gains(mean: LinearRgb) -> LinearRgb {
+    /// Reflectance of a photographer's grey card, to which exposure meters are set. [ISO 2720]
+    const GREY_CARD: f64 = 0.18;
+    mean.map(|mean| GREY_CARD / mean.max(f64::EPSILON))
 }
 
 /// A smooth fall to the corners, where the stated share is lost.

@@ -9,7 +9,7 @@ mod scene;
 mod surface;
 mod view;
 
-pub use camera::{CameraParams, ChromaSubsampling};
+pub use camera::{CameraParams, ChromaSubsampling, ExposureMode};
 pub use camera_simulator::{CameraSimulator, LeaguePicture};
 pub use scene::LeagueScene;
 pub use surface::{Material, SceneSurface, SurfaceShape};

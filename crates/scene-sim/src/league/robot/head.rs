@@ -58,7 +58,7 @@ impl Head {
         self.left_s -= step_s;
         if self.left_s <= 0.0 {
             self.target = self.choose(body, landmarks, rng);
-            self.left_s = 0.2 + self.params.mean_gaze_s * uniform(0.5, 1.5, rng);
+            self.left_s = 0.2 + self.params.mean_gaze_duration_s * uniform(0.5, 1.5, rng);
         }
         let wanted = self.wanted(body);
         let top = self.params.speed_radps;

@@ -79,7 +79,7 @@ impl LeggedRobot {
         self.odometry.add(&moved);
         self.head.step(STEP_S, &self.walker.pose, &self.landmarks, streams.of(RandomStreamPurpose::Gaze));
         self.strength += (self.walker.activity().min(1.0) - self.strength) * 0.01;
-        self.phase = advance_phase(self.phase, TAU * STEP_S / self.sway.stride_s);
+        self.phase = advance_phase(self.phase, TAU * STEP_S / self.sway.stride_period_s);
         self.wobble(streams);
     }
 

@@ -7,4 +7,4 @@ mod params;
 mod walker;
 
 pub use legged::LeggedRobot;
-pub use params::{BodySwayParams, GaitOdometryParams, LegWalkParams, LeggedRobotParams, RobotHeadParams};
+pub use params::{BodySwayParams, FieldWalkParams, GaitOdometryParams, LeggedRobotParams, RobotHeadParams};

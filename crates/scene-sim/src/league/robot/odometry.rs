@@ -18,7 +18,7 @@ pub(super) struct GaitOdometry {
 
 impl GaitOdometry {
     pub(super) fn new<R: Rng + ?Sized>(params: GaitOdometryParams, rng: &mut R) -> Self {
-        let [step, turn] = [params.step_scale, params.turn_scale];
+        let [step, turn] = [params.step_scale_range, params.turn_scale_range];
         let scales = [step, step, turn].map(|[low, high]| uniform(low, high, rng));
         Self { params, scales, drift: GaussMarkovProcess::new(params.drift_correlation_s), moved: [0.0; 3] }
     }
@@ -30,7 +30,7 @@ impl GaitOdometry {
 
     pub(super) fn take<R: Rng + ?Sized>(&mut self, seconds: f64, rng: &mut R) -> Pose2<f64> {
         let [x, y, turn] = self.moved;
-        let drift = self.params.drift_rad_per_m * self.drift.advance(seconds, rng) * libm::hypot(x, y);
+        let drift = self.params.drift_sigma_rad_per_m * self.drift.advance(seconds, rng) * libm::hypot(x, y);
         let truth = [x, y, turn + drift];
         self.moved = [0.0; 3];
         let mut said = [0.0; 3];

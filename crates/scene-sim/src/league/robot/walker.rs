@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::LegWalkParams;
+use super::FieldWalkParams;
 use crate::league::field::spot;
 use crate::plane;
 use crate::random::deviate::{chance, uniform};
@@ -12,7 +12,7 @@ use crate::random::deviate::{chance, uniform};
 /// Path of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Walker {
-    params: LegWalkParams,
+    params: FieldWalkParams,
     pub(super) pose: Pose2<f64>,
     /// Forwards and to the left, m/s.
     velocity: Vector2<f64>,
@@ -36,7 +36,7 @@ const WORTH_M: f64 = 1.2;
 const TURNED_RAD: f64 = 0.1;
 
 impl Walker {
-    pub(super) fn new(params: LegWalkParams, start: Pose2<f64>) -> Self {
+    pub(super) fn new(params: FieldWalkParams, start: Pose2<f64>) -> Self {
         Self {
             params,
             pose: start,
@@ -47,8 +47,8 @@ impl Walker {
     }
 
     /// Somewhere on the field, any heading.
-    pub(super) fn anywhere<R: Rng + ?Sized>(params: &LegWalkParams, rng: &mut R) -> Pose2<f64> {
-        let at = spot(params.board_margin_m, rng);
+    pub(super) fn anywhere<R: Rng + ?Sized>(params: &FieldWalkParams, rng: &mut R) -> Pose2<f64> {
+        let at = spot(params.min_board_distance_m, rng);
         Pose2::new(at.x, at.y, uniform(-PI, PI, rng))
     }
 
@@ -66,7 +66,7 @@ impl Walker {
     /// Advances the time; returns the motion in its frame before.
     pub(super) fn step<R: Rng + ?Sized>(&mut self, step_s: f64, rng: &mut R) -> Pose2<f64> {
         let (velocity, turning) = self.command(step_s, rng);
-        let reached = step_s / (self.params.lag_s + step_s);
+        let reached = step_s / (self.params.speed_time_constant_s + step_s);
         self.velocity += (velocity - self.velocity) * reached;
         self.turning += (turning - self.turning) * reached;
         let moved = self.velocity * step_s;
@@ -102,12 +102,12 @@ impl Walker {
 
     /// A random goal that is usually far enough.
     fn elsewhere<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector2<f64> {
-        let mut to = spot(self.params.board_margin_m, rng);
+        let mut to = spot(self.params.min_board_distance_m, rng);
         for _ in 0..10 {
             if (to - self.pose.translation).norm() > WORTH_M {
                 break;
             }
-            to = spot(self.params.board_margin_m, rng);
+            to = spot(self.params.min_board_distance_m, rng);
         }
         to
     }

@@ -25,7 +25,7 @@ impl Scenery {
     /// Width and height of a view, in pixels. [Kasprzak & Szynkiewicz, Sec. 3.5]
     pub const VIEW_PX: usize = 256;
 
-    /// As many states as the paper's scenes of these names have: 352, 234, 594 and 150. [Kasprzak & Szynkiewicz, Table 3]
+    /// As many states as the paper's scenes of these names have: 352, 234, 594 and 150. [Kasprzak & Szynkiewicz, Table 3, Fig. 3]
     pub const ALL: [Self; 4] = [
         Self { name: "lift", columns: 22, rows: 16, step_px: 16, seed: 501 },
         Self { name: "map", columns: 18, rows: 13, step_px: 32, seed: 502 },

@@ -10,12 +10,12 @@ pub struct Clutter {
     /// Mean number per scan, at most 100. Default 0.
     pub mean: f64,
     /// Their identity. Default none.
-    pub label: ClutterLabel,
+    pub label: ClutterIdentity,
 }
 
 /// Identity of a false detection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum ClutterLabel {
+pub enum ClutterIdentity {
     /// No identity.
     #[default]
     Unlabelled,
@@ -51,7 +51,7 @@ impl Clutter {
     }
 }
 
-impl ClutterLabel {
+impl ClutterIdentity {
     fn target(self, any_landmark: Option<&u32>) -> DetectionTarget {
         match (self, any_landmark) {
             (Self::AnyLandmark, Some(id)) => DetectionTarget::Landmark(*id),

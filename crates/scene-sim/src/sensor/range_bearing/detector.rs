@@ -85,7 +85,7 @@ impl SimulatedSensor for RangeBearingDetector {
         let lost = deviate::chance(self.params.scan_dropout_share, streams.of(RandomStreamPurpose::Dropout));
         (!lost).then_some(SensorReading {
             data: RecordData::Detections(detections),
-            stamp_offset_ms: i64::from(self.params.latency_ms),
+            stamp_offset_ms: i64::from(self.params.stamp_delay_ms),
         })
     }
 }
@@ -107,7 +107,7 @@ impl Errors {
             params.noise_shape.draw(streams.of(RandomStreamPurpose::BearingNoise)),
         );
         let drift = drift.advance(f64::from(params.period_ms) * 1e-3, streams);
-        let missed = deviate::chance(params.missed_share, streams.of(RandomStreamPurpose::Missed));
+        let missed = deviate::chance(params.missed_target_share, streams.of(RandomStreamPurpose::Missed));
         let rng = streams.of(RandomStreamPurpose::Outlier);
         let is_outlier = deviate::chance(params.outlier_share, rng);
         let anywhere = (

@@ -5,10 +5,10 @@
 //! | white noise, growing with range, of any [`NoiseShape`](crate::random::NoiseShape) | `range_noise`, `bearing_sigma_rad`, `noise_shape` | m, rad | `RangeNoise`, `BearingNoise` |
 //! | range scale and bias, bearing bias | `range_scale`, `range_bias_m`, `bearing_bias_rad` | 1, m, rad | – |
 //! | time-correlated error, separate for each target | `drift` | m, rad, s | `Drift` |
-//! | stamped late | `latency_ms` | ms | – |
+//! | stamped late | `stamp_delay_ms` | ms | – |
 //! | gross outliers: range and bearing anywhere in view | `outlier_share` | share of detections | `Outlier` |
 //! | whole scans lost | `scan_dropout_share` | share of scans | `Dropout` |
-//! | missed detections | `missed_share` | share of detections | `Missed` |
+//! | missed detections | `missed_target_share` | share of detections | `Missed` |
 //! | false detections | `clutter` | mean number per scan | `Clutter` |
 //! | detections under another landmark's identity | `mislabelled_share` | share of detections | `Mislabel` |
 //! | no identities at all | `labelled` | – | – |
@@ -19,7 +19,7 @@ mod detector;
 mod drift;
 mod params;
 
-pub use clutter::{Clutter, ClutterLabel};
+pub use clutter::{Clutter, ClutterIdentity};
 pub use detector::RangeBearingDetector;
 pub use drift::CorrelatedErrorParams;
 pub use params::{RangeBearingParams, RangeDependentSigma};

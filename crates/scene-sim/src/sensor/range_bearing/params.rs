@@ -36,13 +36,13 @@ pub struct RangeBearingParams {
     /// Errors that hang together in time. Default none.
     pub drift: CorrelatedErrorParams,
     /// Delay of the stamp, milliseconds. Default 0.
-    pub latency_ms: u32,
+    pub stamp_delay_ms: u32,
     /// Share of detections that are gross outliers. Default 0.
     pub outlier_share: f64,
     /// Share of scans missing from the log. (A scan without detections is logged, empty.) Default 0.
     pub scan_dropout_share: f64,
     /// Share of targets in view that are not reported. Default 0.
-    pub missed_share: f64,
+    pub missed_target_share: f64,
     /// Reports of things that are not there. Default none.
     pub clutter: Clutter,
     /// Share of landmark detections with another landmark's identity. Default 0.
@@ -86,10 +86,10 @@ impl Default for RangeBearingParams {
             range_scale: 1.0,
             bearing_bias_rad: 0.0,
             drift: CorrelatedErrorParams::default(),
-            latency_ms: 0,
+            stamp_delay_ms: 0,
             outlier_share: 0.0,
             scan_dropout_share: 0.0,
-            missed_share: 0.0,
+            missed_target_share: 0.0,
             clutter: Clutter::default(),
             mislabelled_share: 0.0,
             labelled: true,
@@ -121,7 +121,7 @@ impl RangeBearingParams {
         self.drift.validate()?;
         check::share("share of outliers", self.outlier_share)?;
         check::share("share of dropped scans", self.scan_dropout_share)?;
-        check::share("share of missed detections", self.missed_share)?;
+        check::share("share of missed detections", self.missed_target_share)?;
         self.clutter.validate()?;
         check::share("share of mislabelled detections", self.mislabelled_share)
     }

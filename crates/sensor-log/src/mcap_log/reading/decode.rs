@@ -6,7 +6,7 @@ use prost::Message;
 use wayfix_estimation_traits::Pose2;
 
 use super::super::cloud::{self, PointField};
-use super::super::{camera, scan, vehicle};
+use super::super::{camera, measurement, scan, vehicle};
 use super::routes::Route;
 use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
@@ -31,6 +31,7 @@ pub(in crate::mcap_log) fn records(
         Route::TruePosition => vehicle::position(bytes, log_time),
         Route::TruePose => pose_record(bytes, log_time, RecordData::TruePose),
         Route::EstimatedPose => pose_record(bytes, log_time, RecordData::EstimatedPose),
+        Route::PoseMeasurement => measurement::measurement(bytes, log_time),
         Route::CameraInfo => camera::info(bytes, log_time),
         Route::CameraMount => camera::mount(bytes, log_time),
         Route::CameraOptical | Route::ScanPoints => Ok(Vec::new()),

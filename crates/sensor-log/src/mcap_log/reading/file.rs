@@ -8,14 +8,14 @@ use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 
 use super::super::origin;
-use super::super::writing::sink::{ChannelKey, Message, MessageSink};
+use super::super::writing::sink::{ChannelKey, FoxgloveMessage, FoxgloveMessageSink};
 use crate::{LogError, LogFormat};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
 
 /// Writes messages to an MCAP file. Equal messages give equal bytes: no compression, no clock, no library version.
-pub struct McapFile<W: Write + Seek> {
+pub struct McapMessageSink<W: Write + Seek> {
     writer: mcap::Writer<W>,
     channels: BTreeMap<ChannelKey, Channel>,
 }
@@ -25,7 +25,7 @@ struct Channel {
     sequence: u32,
 }
 
-impl McapFile<BufWriter<File>> {
+impl McapMessageSink<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl McapFile<BufWriter<File>> {
     }
 }
 
-impl<W: Write + Seek> McapFile<W> {
+impl<W: Write + Seek> McapMessageSink<W> {
     /// Writes to `out`.
     ///
     /// # Errors
@@ -52,14 +52,14 @@ impl<W: Write + Seek> McapFile<W> {
     }
 }
 
-impl<W: Write + Seek> MessageSink for McapFile<W> {
-    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
-        let &Message { topic, schema, descriptors, metadata, stamp, data } = message;
+impl<W: Write + Seek> FoxgloveMessageSink for McapMessageSink<W> {
+    fn message(&mut self, message: &FoxgloveMessage<'_>) -> Result<(), LogError> {
+        let &FoxgloveMessage { topic, schema, descriptors, metadata, stamp, data } = message;
         let channel = match self.channels.entry(message.channel()) {
             Entry::Occupied(entry) => entry.into_mut(),
             Entry::Vacant(entry) => {
-                let schema_id = self.writer.add_schema(schema, Message::ENCODING, descriptors)?;
-                let id = self.writer.add_channel(schema_id, topic, Message::ENCODING, metadata)?;
+                let schema_id = self.writer.add_schema(schema, FoxgloveMessage::ENCODING, descriptors)?;
+                let id = self.writer.add_channel(schema_id, topic, FoxgloveMessage::ENCODING, metadata)?;
                 entry.insert(Channel { id, sequence: 0 })
             }
         };

@@ -5,7 +5,7 @@ use mcap::records::op;
 
 use super::fields::Fields;
 use super::stream::{RecordStream, Step};
-use crate::{LogEnd, LogError};
+use crate::{LogCompleteness, LogError};
 
 /// The files of one recording, merged message by message in log-time order.
 ///
@@ -76,7 +76,7 @@ impl Parts {
             return (waiting.index, self.begin(waiting));
         }
         let Some(part) = self.open.iter_mut().min_by_key(|part| due(part)) else {
-            return (0, Step::End(LogEnd::Complete));
+            return (0, Step::End(LogCompleteness::Complete));
         };
         if let Some((_, body)) = part.next.take() {
             take(part.index, op::MESSAGE, &body);
@@ -102,7 +102,7 @@ impl Parts {
         self.open.remove(at);
         match end {
             end if self.open.is_empty() && self.waiting.is_empty() => Step::End(end),
-            LogEnd::Complete => Step::On,
+            LogCompleteness::Complete => Step::On,
             end => Step::Cut(end),
         }
     }

@@ -14,7 +14,8 @@ use super::{decode, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::formats::format::shortened;
 use crate::{
-    BagTopic, LogEnd, LogError, LogFormat, ReadReport, Record, RecordData, RowProblem, RowProblemKind, Stamp,
+    BagTopic, LogCompleteness, LogError, LogFormat, ReadReport, Record, RecordData, RowProblem,
+    RowProblemKind, Stamp,
 };
 
 /// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
@@ -85,7 +86,7 @@ impl McapRecords {
                 true
             }
             Step::End(end) => {
-                if end != LogEnd::Complete {
+                if end != LogCompleteness::Complete {
                     report.end = end;
                 }
                 self.messages.finish(report);

@@ -20,6 +20,7 @@ pub(in crate::mcap_log) enum Route {
     TrueLandmarks,
     TrueWalls,
     EstimatedPose,
+    PoseMeasurement,
     CameraInfo,
     CameraMount,
     /// Known and skipped: the rotation is constant.
@@ -51,6 +52,7 @@ impl Route {
             topics::TRUE_LANDMARKS => (Self::TrueLandmarks, "foxglove.PointCloud"),
             topics::TRUE_WALLS => (Self::TrueWalls, "foxglove.PointCloud"),
             topics::ESTIMATED_POSE => (Self::EstimatedPose, "foxglove.PoseInFrame"),
+            topics::POSE_MEASUREMENT => (Self::PoseMeasurement, "foxglove.PointCloud"),
             topics::CAMERA_INFO => (Self::CameraInfo, "foxglove.CameraCalibration"),
             topics::CAMERA_MOUNT => (Self::CameraMount, "foxglove.FrameTransform"),
             topics::CAMERA_OPTICAL => (Self::CameraOptical, "foxglove.FrameTransform"),

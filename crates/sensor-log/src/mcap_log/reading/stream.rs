@@ -8,7 +8,7 @@ use mcap::records::op;
 use super::super::frames::{Frame, Frames};
 use super::chunk::ChunkRecords;
 use crate::formats::unsupported_format;
-use crate::{LogEnd, LogError, LogFormat};
+use crate::{LogCompleteness, LogError, LogFormat};
 
 /// The records of an MCAP file in file order, including those in chunks; memory use does not grow with the file.
 pub(in crate::mcap_log) struct RecordStream {
@@ -23,9 +23,9 @@ pub(in crate::mcap_log) enum Step {
     /// A chunk that cannot be unpacked; reading can continue after it.
     DamagedChunk(String),
     /// The last chunk breaks off; its beginning follows.
-    Cut(LogEnd),
+    Cut(LogCompleteness),
     /// The end.
-    End(LogEnd),
+    End(LogCompleteness),
 }
 
 impl RecordStream {

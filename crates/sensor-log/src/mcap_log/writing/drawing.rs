@@ -1,6 +1,7 @@
 use foxglove::messages::{
-    Color, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose, SceneEntity, SceneUpdate,
-    SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive, points_annotation,
+    Color, CubePrimitive, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose,
+    SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive,
+    points_annotation,
 };
 use wayfix_estimation_traits::Pose2;
 
@@ -11,6 +12,9 @@ const ELLIPSE_POINTS: usize = 48;
 /// Width of lines and size of letters, screen pixels.
 const LINE_PIXELS: f64 = 2.0;
 const TEXT_PIXELS: f64 = 12.0;
+
+/// Thickness of a drawn wall, m.
+const WALL_THICKNESS: f64 = 0.05;
 
 /// Something to draw in a viewer; a later one with the same `id` replaces it.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +27,7 @@ pub struct ViewerDrawing {
     pub shape: DrawingShape,
 }
 
-/// Planar shapes; metres and radians.
+/// Shapes on the ground; metres and radians.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DrawingShape {
@@ -38,6 +42,13 @@ pub enum DrawingShape {
     },
     /// A line through points.
     Path(Vec<[f64; 2]>),
+    /// An upright wall on the ground, m.
+    Wall {
+        /// Its ends.
+        ends: [[f64; 2]; 2],
+        /// Its height.
+        height: f64,
+    },
     /// A ball with a text beside it, for instance a landmark and its number.
     Marker {
         /// Centre.
@@ -101,6 +112,13 @@ fn entity(timestamp: Timestamp, frame: &str, drawing: &ViewerDrawing) -> SceneEn
             entity.lines.push(line(line_primitive::Type::LineLoop, &outline, color));
         }
         DrawingShape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
+        DrawingShape::Wall { ends: [[x, y], [to_x, to_y]], height } => {
+            let (dx, dy) = (to_x - x, to_y - y);
+            let mut pose = encode::pose(&Pose2::new(x + dx / 2.0, y + dy / 2.0, libm::atan2(dy, dx)));
+            pose.position = pose.position.map(|position| Vector3 { z: height / 2.0, ..position });
+            let size = Some(Vector3 { x: libm::hypot(dx, dy), y: WALL_THICKNESS, z: *height });
+            entity.cubes.push(CubePrimitive { pose: Some(pose), size, color: Some(color) });
+        }
         DrawingShape::Marker { position: [x, y], radius, text } => {
             let pose = Some(encode::pose(&Pose2::new(*x, *y, 0.0)));
             let size = Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius });

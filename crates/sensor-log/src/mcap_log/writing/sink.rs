@@ -4,7 +4,7 @@ use crate::{LogError, LogFormat, Stamp};
 
 /// A Foxglove message, encoded as protobuf.
 #[derive(Clone, Copy, Debug)]
-pub struct Message<'a> {
+pub struct FoxgloveMessage<'a> {
     /// Topic of the message.
     pub topic: &'a str,
     /// Name of its schema, for instance `foxglove.PoseInFrame`.
@@ -19,7 +19,7 @@ pub struct Message<'a> {
     pub data: &'a [u8],
 }
 
-impl Message<'_> {
+impl FoxgloveMessage<'_> {
     /// Encoding of schemas and messages.
     pub const ENCODING: &'static str = "protobuf";
 
@@ -44,28 +44,28 @@ pub struct ChannelKey {
 /// Destination of messages: a file, a viewer, or several of them.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{LogError, Message, MessageSink, MessageWriter, Stamp};
+/// use wayfix_sensor_log::{LogError, FoxgloveMessage, FoxgloveMessageSink, FoxgloveMessageWriter, Stamp};
 /// #[derive(Default)]
 /// struct Count(usize);
-/// impl MessageSink for Count {
-///     fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+/// impl FoxgloveMessageSink for Count {
+///     fn message(&mut self, message: &FoxgloveMessage<'_>) -> Result<(), LogError> {
 ///         assert_eq!((message.topic, message.schema), ("/pose", "foxglove.PoseInFrame"));
 ///         self.0 += 1;
 ///         Ok(())
 ///     }
 /// }
-/// let mut writer = MessageWriter::into_sink(Count::default());
+/// let mut writer = FoxgloveMessageWriter::into_sink(Count::default());
 /// writer.pose_in_frame("/pose", Stamp::from_nanoseconds(5), "world", &Pose2::new(1.0, 2.0, 0.5))?;
 /// assert_eq!(writer.sink().0, 1);
 /// writer.finish()?;
 /// # Ok::<(), LogError>(())
 /// ```
-pub trait MessageSink {
+pub trait FoxgloveMessageSink {
     /// Takes a message.
     ///
     /// # Errors
     /// Returns an error if it cannot be passed on.
-    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError>;
+    fn message(&mut self, message: &FoxgloveMessage<'_>) -> Result<(), LogError>;
 
     /// Announces the original format of the records, before the first message.
     /// # Errors
@@ -84,10 +84,10 @@ pub trait MessageSink {
 }
 
 /// Several sinks; each gets every message.
-pub type MessageSinks = Vec<Box<dyn MessageSink>>;
+pub type MessageSinks = Vec<Box<dyn FoxgloveMessageSink>>;
 
-impl MessageSink for MessageSinks {
-    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+impl FoxgloveMessageSink for MessageSinks {
+    fn message(&mut self, message: &FoxgloveMessage<'_>) -> Result<(), LogError> {
         self.iter_mut().try_for_each(|sink| sink.message(message))
     }
 
@@ -96,6 +96,6 @@ impl MessageSink for MessageSinks {
     }
 
     fn finish(self: Box<Self>) -> Result<(), LogError> {
-        self.into_iter().try_for_each(MessageSink::finish)
+        self.into_iter().try_for_each(FoxgloveMessageSink::finish)
     }
 }

@@ -7,16 +7,16 @@ use foxglove::Encode;
 use foxglove::messages::{FrameTransform, PosesInFrame};
 use wayfix_estimation_traits::Pose2;
 
-use super::super::reading::file::McapFile;
+use super::super::reading::file::McapMessageSink;
 use super::super::reading::pending_cloud::PendingCloud;
 use super::super::{ImageOutline, ViewerDrawing, camera, topics};
 use super::drawing::{image_annotations, scene_update};
 use super::encode;
-use super::sink::{Message, MessageSink};
-use crate::{EncodedImage, ImageFormat, LogError, LogFormat, Record, Stamp};
+use super::sink::{FoxgloveMessage, FoxgloveMessageSink};
+use crate::{EncodedImage, ImageFileFormat, LogError, LogFormat, Record, Stamp};
 
-/// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`MessageSink`]).
-pub struct MessageWriter<S: MessageSink> {
+/// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`FoxgloveMessageSink`]).
+pub struct FoxgloveMessageWriter<S: FoxgloveMessageSink> {
     sink: S,
     pending_cloud: PendingCloud,
     /// The laser's own once it is known where that is.
@@ -25,7 +25,7 @@ pub struct MessageWriter<S: MessageSink> {
 
 /// Writes records and drawings to an MCAP file for Foxglove and Rerun.
 ///
-/// Equal calls give equal bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
+/// Equal calls give equal bytes: no compression, no clock, no library version. [`finish`](FoxgloveMessageWriter::finish) completes the file.
 /// ```
 /// use std::io::Cursor;
 /// use wayfix_estimation_traits::Pose2;
@@ -38,7 +38,7 @@ pub struct MessageWriter<S: MessageSink> {
 /// assert!(file.into_inner().starts_with(b"\x89MCAP0\r\n"));
 /// # Ok::<(), wayfix_sensor_log::LogError>(())
 /// ```
-pub type McapWriter<W> = MessageWriter<McapFile<W>>;
+pub type McapWriter<W> = FoxgloveMessageWriter<McapMessageSink<W>>;
 
 impl McapWriter<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
@@ -46,7 +46,7 @@ impl McapWriter<BufWriter<File>> {
     /// # Errors
     /// Returns an error if it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
-        Ok(Self::into_sink(McapFile::create(path)?))
+        Ok(Self::into_sink(McapMessageSink::create(path)?))
     }
 }
 
@@ -56,11 +56,11 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     /// Returns an error if `out` fails.
     pub fn new(out: W) -> Result<Self, LogError> {
-        Ok(Self::into_sink(McapFile::new(out)?))
+        Ok(Self::into_sink(McapMessageSink::new(out)?))
     }
 }
 
-impl<S: MessageSink> MessageWriter<S> {
+impl<S: FoxgloveMessageSink> FoxgloveMessageWriter<S> {
     /// Writes into `sink`.
     pub fn into_sink(sink: S) -> Self {
         Self { sink, pending_cloud: PendingCloud::default(), scan_frame: topics::BODY_FRAME }
@@ -71,7 +71,7 @@ impl<S: MessageSink> MessageWriter<S> {
         &self.sink
     }
 
-    /// Stores the original format of the records; reading returns it as [`LogMeta::origin`](crate::LogMeta::origin).
+    /// Stores the original format of the records; reading returns it as [`LogMetadata::origin`](crate::LogMetadata::origin).
     ///
     /// Call it before anything else is written, because streaming readers need it first. MCAP as the origin is not stored, because it is the
     /// format of the file.
@@ -184,7 +184,9 @@ impl<S: MessageSink> MessageWriter<S> {
     /// # Errors
     /// Returns the errors of [`record`](Self::record).
     pub fn image(&mut self, topic: &str, stamp: Stamp, image: &EncodedImage) -> Result<(), LogError> {
-        if image.format == ImageFormat::Pnm || ImageFormat::of_bytes(&image.bytes) != Some(image.format) {
+        if image.format == ImageFileFormat::Pnm
+            || ImageFileFormat::of_bytes(&image.bytes) != Some(image.format)
+        {
             let (what, n_bytes) = ("image", image.bytes.len());
             return Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp });
         }
@@ -240,7 +242,7 @@ impl<S: MessageSink> MessageWriter<S> {
         M: Encode + prost::Message,
     {
         let schema = M::get_schema().expect("invariant: every Foxglove message has a schema");
-        self.sink.message(&Message {
+        self.sink.message(&FoxgloveMessage {
             topic,
             schema: &schema.name,
             descriptors: &schema.data,

@@ -26,7 +26,7 @@ use super::half_circle::is_half_circle;
 use super::row::{RowError, stamp_of};
 use super::scan_odometry::ScanOdometry;
 use crate::formats::compressed::TextReader;
-use crate::{LogEnd, LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind};
+use crate::{LogCompleteness, LogError, PoseKind, ReadReport, Record, RecordData, RowProblemKind};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row).is_ok()
@@ -71,7 +71,7 @@ impl CarmenLog {
                     return None;
                 }
                 Err(error) => {
-                    report.end = lines.end_after(error).unwrap_or_else(|error| LogEnd::Damaged {
+                    report.end = lines.end_after(error).unwrap_or_else(|error| LogCompleteness::Damaged {
                         byte: lines.n_bytes(),
                         reason: error.to_string(),
                     });

@@ -20,19 +20,24 @@ pub struct LandmarkConfirmationParams {
     /// Number of consecutive misses after which a tentative landmark is removed; never, if not given. Landmarks with an identity that the sensor
     /// reads do not need it; landmarks that data association starts do.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub max_missed: Option<usize>,
+    pub max_consecutive_misses: Option<usize>,
     /// NIS above which an observation contradicts a tentative landmark, which then restarts. 13.8 is the 0.999 quantile for range and
     /// bearing.
-    pub restart_nis: f64,
+    pub tentative_restart_nis: f64,
     /// Share of the scans with a confirmed landmark in view in which it must be detected, or it leaves the map; 0 keeps all. Tested after more
-    /// than `max_missed` misses.
+    /// than `max_consecutive_misses` misses.
     pub min_detection_rate: f64,
 }
 
 impl Default for LandmarkConfirmationParams {
     /// Two observations that agree.
     fn default() -> Self {
-        Self { min_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
+        Self {
+            min_detections: 2,
+            max_consecutive_misses: None,
+            tentative_restart_nis: 13.8155,
+            min_detection_rate: 0.0,
+        }
     }
 }
 
@@ -53,7 +58,7 @@ where
         id: LandmarkId,
         innovation: &Innovation<M::Measurement>,
     ) -> bool {
-        self.is_tentative(id) && innovation.nis > self.params.confirmation.restart_nis
+        self.is_tentative(id) && innovation.nis > self.params.confirmation.tentative_restart_nis
     }
 
     pub(in crate::filter) fn count_detection(&mut self, id: LandmarkId) {
@@ -66,8 +71,10 @@ where
 
     /// Updates the landmark attributes that are not estimated, from one observation.
     pub(in crate::filter) fn extend(&mut self, id: LandmarkId, measurement: &M::Measurement) {
-        if let Some(slot) = self.landmarks.get_mut(&id) {
-            slot.mean = self.model.extended(&self.robot, &slot.mean, measurement);
+        let in_state = self.landmarks.get_mut(&id).map(|slot| &mut slot.mean);
+        let retired = self.retired.get_mut(&id).map(|retired| &mut retired.mean);
+        if let Some(mean) = in_state.or(self.anchors.get_mut(&id)).or(retired) {
+            *mean = self.model.extended(&self.robot, mean, measurement);
         }
     }
 
@@ -75,7 +82,7 @@ where
     pub(in crate::filter) fn remove_undetected(&mut self) {
         let LandmarkConfirmationParams {
             min_detections,
-            max_missed: Some(max_missed),
+            max_consecutive_misses: Some(max_consecutive_misses),
             min_detection_rate,
             ..
         } = self.params.confirmation
@@ -93,9 +100,9 @@ where
             slot.n_missed += usize::from(is_missed);
             let share = slot.n_detections as f64 / (slot.n_detections + slot.n_missed) as f64;
             let is_overdue = if slot.n_detections < min_detections {
-                slot.n_missed_in_a_row > max_missed
+                slot.n_missed_in_a_row > max_consecutive_misses
             } else {
-                slot.n_missed > max_missed && share < min_detection_rate
+                slot.n_missed > max_consecutive_misses && share < min_detection_rate
             };
             if is_overdue {
                 forgotten.push(*id);

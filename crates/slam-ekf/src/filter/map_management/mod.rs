@@ -1,5 +1,6 @@
-//! Which landmarks are in the map: confirmation, merging, retirement.
+//! Which landmarks are in the map: anchors, confirmation, merging, retirement.
 
+pub(super) mod anchors;
 pub(super) mod confirmation;
 pub(super) mod merge;
 pub(super) mod retire;

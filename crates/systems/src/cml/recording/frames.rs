@@ -28,7 +28,7 @@ pub struct PosedFrame {
 
 /// A folder of frames with poses, in capture order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrameRecording {
+pub struct PosedFrameFolder {
     /// Frames with a pose.
     pub frames: Vec<PosedFrame>,
     /// Number of images without a pose.
@@ -52,7 +52,7 @@ pub struct PoseTables<'a> {
     pub stamp_columns: Option<&'a PoseTableColumns>,
 }
 
-impl FrameRecording {
+impl PosedFrameFolder {
     /// Reads the images of a folder and the tables of their times and poses. Skips unusable rows and images.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ mod table;
 
 pub use columns::PoseTableColumns;
 pub use error::RecordingError;
-pub use frames::{FrameRecording, PoseTables, PosedFrame};
+pub use frames::{PoseTables, PosedFrame, PosedFrameFolder};
 pub use path::HeadingSource;
 pub use sense::{AzimuthDirectionEvidence, turn_evidence};
 pub use smooth::{smoothed, smoothing_of};

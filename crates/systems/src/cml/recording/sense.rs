@@ -1,4 +1,4 @@
-use wayfix_appearance_cml::{Descriptor, PanoramaDescriptor};
+use wayfix_appearance_cml::{PanoramaDescriptor, ViewDescriptor};
 use wayfix_estimation_traits::wrap_angle;
 
 /// Agreement of the turns in the views with those of the path: mean disagreement, rad, with descriptors of clockwise columns.

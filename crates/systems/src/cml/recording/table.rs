@@ -121,7 +121,7 @@ impl Table {
                 "{}: no unit is stated, taken are {units}; state it in the names, or by {option}",
                 self.file
             );
-            report.warn("unit_assumed", text);
+            report.warn("column_unit_assumed", text);
         }
     }
 }

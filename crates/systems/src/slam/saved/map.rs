@@ -134,18 +134,15 @@ pub(crate) fn check_association(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{PointState, SavedPointMap};
+    use crate::points::{PointFrontEndState as Points, SavedPointMap};
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<PointState>() }, "robot is Ackermann"),
-            (Kind { landmark: "wall".to_owned(), ..Kind::of::<PointState>() }, "landmark is wall"),
-            (Kind { robot_dimension: 3, ..Kind::of::<PointState>() }, "robot dimension is 3, here it is 4"),
-            (
-                Kind { landmark_dimension: 3, ..Kind::of::<PointState>() },
-                "landmark dimension is 3, here it is 2",
-            ),
+            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<Points>() }, "robot is Ackermann"),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<Points>() }, "landmark is wall"),
+            (Kind { robot_dimension: 3, ..Kind::of::<Points>() }, "robot dimension is 3, here it is 4"),
+            (Kind { landmark_dimension: 3, ..Kind::of::<Points>() }, "landmark dimension is 3, here it is 2"),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedPointMap::from_bytes(&sealed).unwrap_err();

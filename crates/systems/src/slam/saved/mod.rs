@@ -16,4 +16,4 @@ mod saver;
 pub use error::SavedMapError;
 pub use map::SlamState;
 pub(crate) use map::check_association;
-pub use saver::PeriodicSaver;
+pub use saver::PeriodicStateSaver;

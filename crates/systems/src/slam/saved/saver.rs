@@ -7,7 +7,7 @@ use super::{SavedMapError, SlamState};
 use crate::slam::FrontEndState;
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
-pub struct PeriodicSaver {
+pub struct PeriodicStateSaver {
     path: PathBuf,
     /// Seconds of the log between two saves; only at the end, when not given.
     period: Option<f64>,
@@ -15,7 +15,7 @@ pub struct PeriodicSaver {
     failure: Option<SavedMapError>,
 }
 
-impl PeriodicSaver {
+impl PeriodicStateSaver {
     /// A saver to `path`, every `period` seconds of the log's time.
     pub fn new(path: PathBuf, period: Option<f64>) -> Self {
         Self { path, period, saved_at: None, failure: None }

@@ -6,7 +6,7 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_sensor_log::{
-    ImageOutline, LogFormat, McapFile, MessageSinks, MessageWriter, Record, RecordData, topics,
+    FoxgloveMessageWriter, ImageOutline, LogFormat, McapMessageSink, MessageSinks, Record, RecordData, topics,
 };
 use wayfix_visual_tracking::TrackStatus;
 
@@ -29,7 +29,7 @@ impl TrackEstimateRecorder {
     /// Returns an error if a file cannot be created.
     pub fn create(log: &Path, boxes: &Path, origin: LogFormat) -> Result<Self> {
         let file = File::create(boxes).with_context(|| format!("cannot create {}", boxes.display()))?;
-        Self::new(vec![Box::new(McapFile::create(log)?)], Box::new(BufWriter::new(file)), origin)
+        Self::new(vec![Box::new(McapMessageSink::create(log)?)], Box::new(BufWriter::new(file)), origin)
     }
 
     /// Writes images and outlines into all of `sinks`.
@@ -37,7 +37,7 @@ impl TrackEstimateRecorder {
     /// # Errors
     /// Returns an error if a sink fails.
     pub fn new(sinks: MessageSinks, boxes: Box<dyn Write>, origin: LogFormat) -> Result<Self> {
-        let mut writer = MessageWriter::into_sink(sinks);
+        let mut writer = FoxgloveMessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, boxes, n_lines: 0, failure: None })
     }

@@ -1,6 +1,5 @@
 //! Pictures and files of a tracker run.
 
-pub(super) mod decimated;
 pub(super) mod estimates;
 pub(super) mod overlay;
 pub(super) mod plots;

@@ -57,7 +57,7 @@ fn overlap(run_history: &TrackRunHistory) -> LinePlot {
     }
 }
 
-/// The colour distribution along its path, as ellipses in two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
+/// The colour distribution along its path, as ellipses in two planes of the space. [Andrade-Cetto 2005, Figs. 8 and 13]
 fn clouds(run_history: &TrackRunHistory, names: [&str; 3]) -> CovarianceEllipsesPlot {
     let plane = |v: usize| {
         let ellipse = |(index, colors): &(usize, TargetColorDistribution)| NamedEllipse {

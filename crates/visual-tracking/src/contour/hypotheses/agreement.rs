@@ -1,11 +1,11 @@
-use super::super::ContourTrackerParams;
+use super::super::ColorContourTrackerParams;
 
 /// Agreement of a segmentation with the known target, each part from 0 to 1.
-/// [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and weight"]
+/// [Andrade-Cetto 2005, Sec. 3.3, "Measure and weight"]
 /// ```
-/// use wayfix_visual_tracking::{ColorHypothesisAgreement, ContourTrackerParams};
+/// use wayfix_visual_tracking::{ColorHypothesisAgreement, ColorContourTrackerParams};
 /// let perfect = ColorHypothesisAgreement { affine: 1.0, area: ColorHypothesisAgreement::of_areas(400.0, 400.0), quality: ColorHypothesisAgreement::of_euler_number(1, 10.0) };
-/// let params = ContourTrackerParams::default();
+/// let params = ColorContourTrackerParams::default();
 /// assert_eq!((perfect.mismatch(&params), perfect.log_weight(&params), perfect.score(&params)), (0.0, 0.0, 1.0));
 /// assert_eq!(ColorHypothesisAgreement::of_areas(400.0, 300.0), 0.75);
 /// assert_eq!(ColorHypothesisAgreement::of_euler_number(-1, 10.0), 0.8); // two holes
@@ -36,18 +36,18 @@ impl ColorHypothesisAgreement {
     }
 
     /// $`ρ = μ_1 (1 - Φ_\text{affine}) + μ_2 (1 - Φ_\text{area}) + μ_3 (1 - Φ_\text{quality})`$.
-    pub fn mismatch(&self, params: &ContourTrackerParams) -> f64 {
-        let [affine, area, quality] = params.quality_weights;
+    pub fn mismatch(&self, params: &ColorContourTrackerParams) -> f64 {
+        let [affine, area, quality] = params.agreement_weights;
         affine * (1.0 - self.affine) + area * (1.0 - self.area) + quality * (1.0 - self.quality)
     }
 
     /// $`\log π = -ρ^2 / 2σ^2`$ in nats.
-    pub fn log_weight(&self, params: &ContourTrackerParams) -> f64 {
-        -0.5 * (self.mismatch(params) / params.quality_sigma).powi(2)
+    pub fn log_weight(&self, params: &ColorContourTrackerParams) -> f64 {
+        -0.5 * (self.mismatch(params) / params.agreement_sigma).powi(2)
     }
 
     /// $`1 - ρ / (μ_1 + μ_2 + μ_3)`$, from 0 to 1.
-    pub fn score(&self, params: &ContourTrackerParams) -> f64 {
-        1.0 - self.mismatch(params) / params.quality_weights.iter().sum::<f64>()
+    pub fn score(&self, params: &ColorContourTrackerParams) -> f64 {
+        1.0 - self.mismatch(params) / params.agreement_weights.iter().sum::<f64>()
     }
 }

@@ -1,5 +1,8 @@
 use super::super::{ColorHypothesisAgreement, scene::Scene};
-use crate::{AffineMap, ColorEdges, ColorState, MaskEdges, PixelConnectivity, PixelMask, TrackingCues};
+use crate::{
+    AffineMap, ColorDistributionState, ColorEdgeSearch, MaskEdgeSearch, PixelConnectivity, PixelMask,
+    TrackingCues,
+};
 
 /// Estimate of the target under a hypothesis about its colours.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +14,7 @@ pub(in crate::contour) struct Candidate {
 
 impl Candidate {
     /// Weighs a hypothesis: histogram, segmentation, morphology, blob, snake, agreement.
-    pub(in crate::contour) fn of_colors(scene: &Scene<'_>, state: &ColorState) -> Self {
+    pub(in crate::contour) fn of_colors(scene: &Scene<'_>, state: &ColorDistributionState) -> Self {
         match scene.target_mask(&scene.bin_set(state)) {
             Some(mask) => Self::of_mask(scene, &scene.start, &mask),
             None => Self { map: scene.start, area: 0.0, agreement: ColorHypothesisAgreement::NONE },
@@ -28,7 +31,7 @@ impl Candidate {
             }
             _ => {
                 let snake = &scene.reference.snake;
-                let edges = MaskEdges::new(mask, scene.region.rect.corner());
+                let edges = MaskEdgeSearch::new(mask, scene.region.rect.corner());
                 let fit = snake.fit(start, &edges, &params.snake);
                 (fit.map, snake.area_at(&fit.map), fit.support * in_sight(fit.visible))
             }
@@ -38,7 +41,7 @@ impl Candidate {
             area: ColorHypothesisAgreement::of_areas(scene.expected_area, area),
             quality: ColorHypothesisAgreement::of_euler_number(
                 mask.euler_number(PixelConnectivity::Eight),
-                params.euler_number_range,
+                params.max_euler_number_deviation,
             ),
         };
         Self { map, area, agreement }
@@ -47,7 +50,7 @@ impl Candidate {
     /// Without colours: the snake on the edges of the picture.
     pub(in crate::contour) fn of_edges(scene: &Scene<'_>) -> Self {
         let (params, snake) = (scene.params, &scene.reference.snake);
-        let edges = ColorEdges::new(scene.picture, params.edge_contrast);
+        let edges = ColorEdgeSearch::new(scene.picture, params.min_edge_contrast);
         let fit = snake.fit(&scene.start, &edges, &params.snake);
         let area = snake.area_at(&fit.map);
         let agreement = ColorHypothesisAgreement {

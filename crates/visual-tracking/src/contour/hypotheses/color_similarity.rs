@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::super::{scene::Scene, search::black};
 use super::candidate::Candidate;
-use crate::{ColorState, PixelMask, PrincipalColors, TrackingError};
+use crate::{ColorDistributionState, PixelMask, PrincipalColors, TrackingError};
 
 /// Difference of equal colours, as a share of an axis: noise, and changes of light other than intensity.
 const SAME: f64 = 0.02;
@@ -18,7 +18,7 @@ impl Scene<'_> {
     /// the ground has the darkest of them only.
     pub(in crate::contour) fn color_similarity(
         &self,
-        state: &ColorState,
+        state: &ColorDistributionState,
         candidate: &Candidate,
         mask: &PixelMask,
     ) -> Result<f64, TrackingError> {

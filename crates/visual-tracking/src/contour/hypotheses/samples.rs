@@ -1,14 +1,14 @@
 use rand::Rng;
 use wayfix_particle::{ParticleSet, SystematicResampler};
 
-use super::super::ContourTrackerParams;
-use crate::{ColorDynamics, ColorState, PrincipalColors, TrackingError};
+use super::super::ColorContourTrackerParams;
+use crate::{ColorDistributionState, ColorDynamics, PrincipalColors, TrackingError};
 
-/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and the colours measured in the last image.
+/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and the colours measured in the last image. [Andrade-Cetto 2005, Figs. 10–11]
 #[derive(Clone, Debug)]
 pub(in crate::contour) struct Samples {
-    particles: ParticleSet<ColorState>,
-    measured: ColorState,
+    particles: ParticleSet<ColorDistributionState>,
+    measured: ColorDistributionState,
     n_drifts: usize,
 }
 
@@ -24,7 +24,7 @@ impl Samples {
         colors: &PrincipalColors,
         n_samples: usize,
     ) -> Result<Self, TrackingError> {
-        let measured = ColorState::at_rest(colors);
+        let measured = ColorDistributionState::at_rest(colors);
         Ok(Self { particles: ParticleSet::new(vec![measured; n_samples])?, measured, n_drifts: 0 })
     }
 
@@ -34,16 +34,16 @@ impl Samples {
     pub(in crate::contour) fn predicted<R: Rng + ?Sized>(
         &self,
         dynamics: &ColorDynamics,
-        params: &ContourTrackerParams,
+        params: &ColorContourTrackerParams,
         rng: &mut R,
-    ) -> Result<Vec<ColorState>, TrackingError> {
+    ) -> Result<Vec<ColorDistributionState>, TrackingError> {
         let mut particles = self.particles.clone();
         particles.resample(&SystematicResampler, params.n_samples, rng)?;
         let n_anchored = (params.share_from_last_measurement * params.n_samples as f64).round() as usize;
         particles.states_mut().iter_mut().take(n_anchored).for_each(|state| *state = self.measured);
         particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);
         let mut states = particles.states().to_vec();
-        let still = ColorState { velocity: nalgebra::SVector::zeros(), ..self.measured };
+        let still = ColorDistributionState { velocity: nalgebra::SVector::zeros(), ..self.measured };
         for (state, certain) in
             states.iter_mut().take(n_anchored).zip([dynamics.expected(&self.measured), still])
         {
@@ -63,7 +63,7 @@ impl Samples {
     /// The samples after weighing.
     pub(in crate::contour) fn weighed(
         &self,
-        states: Vec<ColorState>,
+        states: Vec<ColorDistributionState>,
         log_weights: Vec<f64>,
     ) -> Result<Self, TrackingError> {
         let particles = ParticleSet::from_log_weights(states, log_weights)?;
@@ -73,10 +73,11 @@ impl Samples {
     /// Makes the colours of the last image the reference of all angles.
     pub(in crate::contour) fn measure(&mut self, before: &PrincipalColors, now: &PrincipalColors) {
         let angles = now.angles_since(before);
-        let mut change = ColorState::at_rest(now).value - ColorState::at_rest(before).value;
+        let mut change =
+            ColorDistributionState::at_rest(now).value - ColorDistributionState::at_rest(before).value;
         change.fixed_rows_mut::<2>(6).copy_from_slice(&angles);
         let velocity = self.measured.velocity + (change - self.measured.velocity) * VELOCITY_GAIN;
-        self.measured = ColorState { velocity, ..ColorState::at_rest(now) };
+        self.measured = ColorDistributionState { velocity, ..ColorDistributionState::at_rest(now) };
         self.particles.states_mut().iter_mut().for_each(|state| *state = state.seen_from(angles));
     }
 }

@@ -16,7 +16,7 @@ const GAIN_STEP: f32 = 1.2;
 /// p(c) = \frac{h_f(c)}{h_f(c) + h_b(c)}
 /// ```
 ///
-/// with the histograms of target and surroundings, each of sum 1 and blended over time as in [Andrade-Cetto & Sanfeliu 2004, Eq. 29].
+/// with the histograms of target and surroundings, each of sum 1 and blended over time as in [Andrade-Cetto 2005, Eq. 29].
 #[derive(Clone, Debug)]
 pub(in crate::correlation) struct ColorRatio {
     target: Vec<f32>,

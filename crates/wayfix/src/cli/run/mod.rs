@@ -1,5 +1,6 @@
 //! `wayfix run`: a file for each system.
 
+pub(super) mod interrupt;
 pub(super) mod run_cml;
 pub(super) mod run_color;
 pub(super) mod run_lines;

@@ -3,7 +3,7 @@ use std::{fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
 use anyhow::{Context, Result, ensure};
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::terminal::{self, print};
-use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_sensor_log::{LogOpenOptions, Record};
 
 use super::super::{
     common::Common,
@@ -12,6 +12,7 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
@@ -25,7 +26,7 @@ use wayfix_systems::{
 /// Colours need no calibration: priors describe dark and bright light, and the filter estimates the actual one.
 ///
 /// If the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures include the errors of the
-/// estimate, `position_mean_m` and `heading_mean_deg`, and `odometry_position_mean_m` for odometry alone from the same start. With true labels,
+/// estimate, `position_mean_m` and `heading_mean_deg`, and `dead_reckoning_position_error_mean_m` for odometry alone from the same start. With true labels,
 /// `classification_rate` is the share of labelled pixels that are classified correctly. Without truth these figures are absent.
 ///
 /// Unusable records are skipped, counted in the events and listed on standard error; the run continues.
@@ -118,7 +119,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         priors.colors()
     );
     let bank = priors::bank(&priors, &params)?;
-    let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
+    let options = LogOpenOptions { topics: arguments.topics.topics, ..LogOpenOptions::default() };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = read_all(log);
@@ -137,11 +138,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         &params,
         start,
         arguments.common.seed,
-        |RunStep { system, record, .. }| {
+        |RunStep { system, record, stop, .. }| {
             if let Some(estimates) = &mut estimates {
                 estimates.observe(record, system);
             }
             particles.observe(system);
+            stop.set(interrupt::is_requested());
             bar.inc(1);
         },
     );
@@ -164,7 +166,7 @@ const FILM_FRAMES: usize = 5;
 
 fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleSnapshots) -> Result<Vec<SvgPlot>> {
     let mut plots = color::plots(color)?;
-    plots.push(particles.draw(color)?);
+    plots.extend(particles.draw(color)?);
     plots.push(color::film(color, records, FILM_FRAMES)?);
     Ok(plots)
 }

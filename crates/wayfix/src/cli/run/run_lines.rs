@@ -1,20 +1,21 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, ensure};
-use wayfix_evaluation::terminal::{self, print};
+use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_line_extract::LineExtractionParams;
-use wayfix_sensor_log::{LogFormat, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all},
+    read_problems::add_read_problems,
 };
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    lines::{self, LineEstimateRecorder, LineSystem},
+    lines::{self, LineEstimateRecorder, LineExtractionSystem},
     system::{RunStep, Stopwatch, System, drive},
 };
 
@@ -55,27 +56,34 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut system = LineSystem::new(params)?;
-    let options =
-        OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
-    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let mut system = LineExtractionSystem::new(params)?;
+    let options = LogOpenOptions {
+        format: arguments.format,
+        topics: arguments.topics.topics,
+        ..LogOpenOptions::default()
+    };
+    let mut log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
-    let (records, read) = read_all(log);
 
     let mut outputs = Outputs::open("lines", &arguments.common)?;
     let mut walls: Option<LineEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let bar = terminal::bar(records.len(), "walls");
-    drive(&mut system, &records, |RunStep { system, record, .. }| {
+    let bar = terminal::counter("walls");
+    drive(&mut system, log.by_ref(), |RunStep { system, record, stop, .. }| {
         if let Some(walls) = &mut walls {
             walls.observe(record, system);
         }
-        bar.inc(1);
+        stop.set(interrupt::is_requested());
+        bar.set_position(system.n_scans());
     });
     bar.finish_and_clear();
+    let read = log.report();
+    if !read.is_clean() {
+        print_message(read);
+    }
     ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
-    let warnings = add_read_problems(system.events(), &read);
-    ensure!(!system.scans().is_empty(), "{}: no laser scan could be used", name_of(&arguments.log));
+    let warnings = add_read_problems(system.events(), read);
+    ensure!(system.latest().is_some(), "{}: no laser scan could be used", name_of(&arguments.log));
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();

@@ -8,13 +8,13 @@ use wayfix_evaluation::{
     report::ReportRun,
     terminal::{self, print, print_message},
 };
-use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
-        AssociationRule, FrontEnd, FrontEndState, PeriodicSaver, SlamEstimateRecorder, SlamRun, SlamState,
-        SlamSystem, StateOf,
+        AssociationRule, FrontEnd, FrontEndState, PeriodicStateSaver, SlamEstimateRecorder, SlamRun,
+        SlamState, SlamSystem, StateOf,
     },
     system::{RunStep, Stopwatch},
 };
@@ -26,7 +26,7 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
-use super::run_walls;
+use super::{interrupt, run_walls};
 use crate::commented::commented;
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
@@ -115,11 +115,11 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params(&arguments, RobotProfile::Generic)?)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let options = OpenOptions {
+    let options = LogOpenOptions {
         format: arguments.format,
         robot: arguments.robot,
         topics: arguments.topics.topics.clone(),
-        ..OpenOptions::default()
+        ..LogOpenOptions::default()
     };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let meta = log.meta().clone();
@@ -163,15 +163,16 @@ where
     let mut outputs = Outputs::open("slam", &arguments.common)?;
     let mut estimates: Option<SlamEstimateRecorder<F>> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut saver = arguments.save.clone().map(|path| PeriodicSaver::new(path, arguments.save_every));
+    let mut saver = arguments.save.clone().map(|path| PeriodicStateSaver::new(path, arguments.save_every));
     let bar = terminal::bar(n_records, "EKF-SLAM");
-    let slam = run(&mut |RunStep { system, record, next }: RunStep<'_, SlamSystem<F>>| {
+    let slam = run(&mut |RunStep { system, record, next, stop }: RunStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
             saver.observe(record, next, || system.save());
         }
+        stop.set(interrupt::is_requested());
         bar.inc(1);
     });
     bar.finish_and_clear();

@@ -8,15 +8,16 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{self, print, print_message};
-use wayfix_sensor_log::{Log, LogFormat, OpenOptions};
+use wayfix_sensor_log::{Log, LogFormat, LogOpenOptions};
 use wayfix_visual_tracking::BoundingBox;
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     settings::from_toml,
-    system::{Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
     track::{
         self, InitialTargetRegion, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig,
         TrackingMethod, TrueBoxes, parse_box,
@@ -31,7 +32,7 @@ use wayfix_systems::{
 ///
 /// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on. `success_auc` is the share of
 /// frames with more overlap than each of 0, 0.05, …, 1, averaged. `precision_20px` is the share of frames with a centre error of at most 20 pixels.
-/// A frame has overlap 0 if the tracker reports the target lost (`n_lost`), or if it cannot be read or is refused (`n_without_estimate`).
+/// A frame has overlap 0 if the tracker reports the target lost (`n_lost`), or if it cannot be read or is refused (`n_frames_without_estimate`).
 /// `false_tracked_share` is the share of the frames with overlap below 0.2 reported as tracked, `false_lost_share` that of the frames with overlap
 /// 0.5 or more reported as lost. Frames without a true box do not count. Without --truth these figures are absent. `frame_mean_ms` is the computing
 /// time of the tracker, without decoding.
@@ -56,7 +57,7 @@ pub(in crate::cli) struct Arguments {
     /// Which tracker.
     #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
     method: TrackingMethod,
-    /// The head and contour trackers as published by Andrade-Cetto & Sanfeliu, without the additions.
+    /// The head and contour trackers as published by Andrade-Cetto 2005, without the additions.
     #[arg(long, conflicts_with = "params")]
     as_published: bool,
     #[command(flatten)]
@@ -113,10 +114,11 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let setup = TrackerConfig { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = terminal::counter("tracking");
-    let track = track::run(system, &mut log, |system, record| {
+    let track = track::run(system, &mut log, |RunStep { system, record, stop, .. }| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
+        stop.set(interrupt::is_requested());
         bar.set_position(system.n_frames() as u64);
     });
     bar.finish_and_clear();
@@ -140,7 +142,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 impl Arguments {
     /// The log, and the frames a second of a folder.
     fn open(&self) -> Result<(Log, Option<f64>)> {
-        let mut options = OpenOptions::default();
+        let mut options = LogOpenOptions::default();
         match (&self.frames, self.log.as_slice()) {
             (Some(folder), _) => {
                 options.format = Some(LogFormat::Images);

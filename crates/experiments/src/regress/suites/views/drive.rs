@@ -33,7 +33,7 @@ pub(super) fn drive(
             let is_told = |metric: &Metric| TOLD.contains(&metric.name.as_str());
             all.metrics.extend(summary.metrics.into_iter().filter(is_told).map(named));
             all.metrics.extend(statistics(&setup, &run.system)?.into_iter().map(named));
-            let events = summary.events.into_iter().filter(|(name, n)| name != "arrived" && *n > 0);
+            let events = summary.events.into_iter().filter(|(name, n)| name != "arrived_at_goal" && *n > 0);
             all.events.extend(events.map(|(name, n)| (format!("{prefix}_{name}"), n)));
             all.notes.extend(summary.notes.into_iter().map(|note| format!("{prefix}: {note}")));
             last = Some(run);

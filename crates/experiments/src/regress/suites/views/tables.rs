@@ -6,7 +6,8 @@ use crate::regress::PlannedJob;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::views::{self, LightNormalization, ViewSystem, ViewSystemConfig};
 
-/// The paper's three tables on a composed scene. Its figures are compared with ours for the whole-scene normalization, which it assumes.
+/// The paper's three tables on a composed scene. [Kasprzak & Szynkiewicz, Tables 1–3] Its figures are compared with ours for the whole-scene
+/// normalization, which it assumes.
 pub(super) fn tables(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let scenes = Scenes::compose(settings)?;
     let paper = PaperSceneRows::named(settings.scene()?);

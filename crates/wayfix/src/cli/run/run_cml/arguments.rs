@@ -3,7 +3,7 @@ use std::{
     str::FromStr,
 };
 
-use wayfix_appearance_cml::{AzimuthDirection, OmnidirectionalRing, RingOrientation};
+use wayfix_appearance_cml::{AzimuthDirection, OmnidirectionalRing, RingVerticalOrientation};
 use wayfix_estimation_traits::Pose2;
 
 use crate::cli::{
@@ -32,8 +32,8 @@ use wayfix_systems::cml::{CmlTask, recording::PoseTableColumns};
 ///
 /// Frames have no odometry: it is computed from the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
 ///
-/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, with nearest_view_error_mean_m of the most similar reference alone
-/// and odometry_error_mean_m; n_references; step_mean_us. Unusable views are skipped, counted in the events and listed on standard error.
+/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, with nearest_reference_error_mean_m of the most similar reference alone
+/// and dead_reckoning_error_mean_m; n_references; step_mean_us. Unusable views are skipped, counted in the events and listed on standard error.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
 pub(crate) struct Arguments {
@@ -193,7 +193,11 @@ impl Arguments {
     }
 
     pub(super) fn donut(&self) -> Option<OmnidirectionalRing> {
-        let up = if self.inner_up { RingOrientation::InnermostUp } else { RingOrientation::OutermostUp };
+        let up = if self.inner_up {
+            RingVerticalOrientation::InnermostUp
+        } else {
+            RingVerticalOrientation::OutermostUp
+        };
         Some(OmnidirectionalRing {
             center: self.center?,
             radii: self.radii?,

@@ -7,10 +7,11 @@ use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{
-    ArchivedViewFormat, AzimuthDirection, ForgettingMode, Learning, LocalizerParams, MapArchive, Start,
+    ArchivedDescriptorFormat, AzimuthDirection, ForgettingMode, LocalizerParams, MapArchive, MapLearning,
+    StartPosePrior,
 };
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
 
 pub(in crate::cli) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
@@ -20,13 +21,14 @@ use super::super::{
     outputs::Outputs,
     read_problems::{add_read_problems, read_all},
 };
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     cml::{
-        self, CameraReadingMode, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
-        CmlTask, PanoramaMap, PeriodicMapSaver, ViewReader,
-        recording::{FrameRecording, PoseTables},
+        self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
+        CmlTask, PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
+        recording::{PoseTables, PosedFrameFolder},
     },
     system::{RunStep, Stopwatch, System},
 };
@@ -46,7 +48,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let stopwatch = Stopwatch::start();
     let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
     let task = arguments.task();
-    let reader = ViewReader::new(params.panorama_descriptor, arguments.donut());
+    let reader = ViewDescriptorReader::new(params.panorama_descriptor, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
     let mut outputs = Outputs::open("cml", &arguments.common)?;
@@ -60,9 +62,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         start,
         &params,
         arguments.common.seed,
-        |RunStep { system, record, .. }| {
+        |RunStep { system, record, stop, .. }| {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
+            stop.set(interrupt::is_requested());
             bar.inc(1);
         },
     );
@@ -105,7 +108,7 @@ impl Arguments {
     fn set_forgetting(&self, params: &mut CmlParams) {
         match self.forgetting {
             None => {}
-            Some(ForgettingArgument::None) => params.localizer.learning = Learning::Static,
+            Some(ForgettingArgument::None) => params.localizer.map_learning = MapLearning::Static,
             Some(ForgettingArgument::Active) => params.localizer.map.forgetting_mode = ForgettingMode::Active,
             Some(ForgettingArgument::Passive) => {
                 params.localizer.map.forgetting_mode = ForgettingMode::Passive;
@@ -118,7 +121,7 @@ impl Arguments {
             self.withhold() != 1,
             "--withhold 1 localizes every view and teaches none: give 0 to build the map on the way, or 2 and more"
         );
-        let is_static = params.localizer.learning == Learning::Static;
+        let is_static = params.localizer.map_learning == MapLearning::Static;
         if is_static && self.task() == CmlTask::ConcurrentMapBuilding {
             bail!(
                 "--forgetting none keeps the map as it is, and there is none: teach one (--withhold, --learn-from) or give one (--map)"
@@ -130,9 +133,9 @@ impl Arguments {
             ColumnsArgument::Clockwise => AzimuthDirection::Clockwise,
             ColumnsArgument::Counterclockwise => AzimuthDirection::Counterclockwise,
         });
-        let camera = CameraReadingMode { donut: self.donut(), sense: told.or(saved_sense) };
+        let camera = CameraViewGeometry { donut: self.donut(), sense: told.or(saved_sense) };
         if !self.log.is_empty() {
-            let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
+            let options = LogOpenOptions { topics: self.topics.topics.clone(), ..LogOpenOptions::default() };
             let log = wayfix_sensor_log::open_all(&self.log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = read_all(log);
@@ -171,7 +174,7 @@ impl Arguments {
         &self,
         task: CmlTask,
         params: &CmlParams,
-        mut reader: ViewReader,
+        mut reader: ViewDescriptorReader,
         saved: Option<MapArchive>,
         plan: &mut CmlRunPlan,
     ) -> Result<(CmlSystem, CmlStartPose)> {
@@ -181,13 +184,13 @@ impl Arguments {
         if let Some(archive) = saved {
             plan.notes.extend(cml::end_note(&archive));
             let size = plan.first_size(&mut reader).unwrap_or(archive.params().size);
-            let params = ArchivedViewFormat { views: *reader.params(), size };
+            let params = ArchivedDescriptorFormat { views: *reader.params(), size };
             (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
         }
         let start = match (self.start, task, first) {
             _ if self.resume.is_some() => {
                 let state = state.context("the file does not say where the robot was: give it as --map")?;
-                CmlStartPose::Saved(Start::Among(state))
+                CmlStartPose::Saved(StartPosePrior::Among(state))
             }
             (Some(StartArgument::Anywhere), ..) => CmlStartPose::Anywhere,
             (Some(StartArgument::At(pose)), CmlTask::ConcurrentMapBuilding, _) => CmlStartPose::Exactly(pose),
@@ -201,9 +204,10 @@ impl Arguments {
         Ok((CmlSystem::new(params, reader, map)?, start))
     }
 
-    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<FrameRecording> {
+    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<PosedFrameFolder> {
         let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
-        let recording = FrameRecording::read(frames, &PoseTables { poses, columns, stamps, stamp_columns })?;
+        let recording =
+            PosedFrameFolder::read(frames, &PoseTables { poses, columns, stamps, stamp_columns })?;
         if !recording.read.is_clean() {
             print_message(&recording.read);
         }

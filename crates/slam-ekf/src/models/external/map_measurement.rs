@@ -1,0 +1,47 @@
+use nalgebra::{DefaultAllocator, Matrix3, Vector2};
+use wayfix_estimation_traits::{Angle, Pose2};
+
+use super::{HeadingSensor, MovedSensor, PlanarRobot, PoseSensor, PositionSensor};
+use crate::{
+    EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, RobotInnovation, SlamAlloc, SlamError,
+};
+
+/// A measurement of the pose in the frame of the map, with its sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MapMeasurement {
+    /// A position, m.
+    Position(PositionSensor, Vector2<f64>),
+    /// A heading.
+    Heading(HeadingSensor, Angle<f64>),
+    /// A pose.
+    Pose(PoseSensor, Pose2<f64>),
+}
+
+impl<M: LandmarkModel<Robot: PlanarRobot>> EkfSlam<M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// Corrects robot and map by a measurement made after a motion from the state, with the covariance of the motion: see [`MovedSensor`] and
+    /// [`update_pose`](Self::update_pose).
+    ///
+    /// # Errors
+    /// Returns the errors of [`update_pose`](Self::update_pose); the filter is then unchanged.
+    pub fn update_moved(
+        &mut self,
+        measurement: &MapMeasurement,
+        motion: Pose2<f64>,
+        covariance: Matrix3<f64>,
+    ) -> Result<RobotInnovation, SlamError> {
+        match *measurement {
+            MapMeasurement::Position(sensor, position) => {
+                self.update_pose(&MovedSensor { sensor, motion, covariance }, &position)
+            }
+            MapMeasurement::Heading(sensor, heading) => {
+                self.update_pose(&MovedSensor { sensor, motion, covariance }, &heading)
+            }
+            MapMeasurement::Pose(sensor, pose) => {
+                self.update_pose(&MovedSensor { sensor, motion, covariance }, &pose)
+            }
+        }
+    }
+}

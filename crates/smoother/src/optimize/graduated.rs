@@ -1,0 +1,48 @@
+use super::{
+    minimize::minimize,
+    params::{Params, Stop, Summary},
+};
+use crate::{
+    SmootherError,
+    graph::{Graph, structure::Structure},
+};
+
+/// Each stage divides μ by this. [Yang et al. 2020, Remark 5]
+const STAGE: f64 = 1.4;
+
+/// Minimizes the cost of a graph: in one stage, or in stages of graduated non-convexity.
+///
+/// The values are those of before if it fails.
+pub(crate) fn run(graph: &mut Graph, params: &Params) -> Result<Summary, SmootherError> {
+    params.validate()?;
+    let mut structure = match graph.structure.take() {
+        Some(structure) => structure,
+        None => Structure::new(graph)?,
+    };
+    let before = params.graduated.then(|| graph.values.clone());
+    let result = stages(graph, &mut structure, params);
+    if let (Err(_), Some(before)) = (&result, before) {
+        graph.values = before;
+    }
+    graph.structure = Some(structure);
+    result
+}
+
+fn stages(graph: &mut Graph, structure: &mut Structure, params: &Params) -> Result<Summary, SmootherError> {
+    let start_cost = graph.cost();
+    let mut iterations = 0;
+    if params.graduated {
+        let largest =
+            graph.batches.iter().map(|batch| batch.largest_graduated(&graph.values)).fold(0.0, f64::max);
+        let mut mu = 2.0 * largest; // convex at all residuals [Yang et al. 2020, Remark 5]
+        while mu > 1.0 && mu.is_finite() {
+            let stage = Params { max_iterations: 1, ..*params };
+            iterations += minimize(graph, structure, &stage, mu)?.iterations;
+            mu /= STAGE;
+        }
+    }
+    let left = params.max_iterations.saturating_sub(iterations).max(1);
+    let last = minimize(graph, structure, &Params { max_iterations: left, ..*params }, 1.0)?;
+    let stop = if last.stop == Stop::Converged { Stop::Converged } else { last.stop };
+    Ok(Summary { start_cost, iterations: iterations + last.iterations, stop, ..last })
+}

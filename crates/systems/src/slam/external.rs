@@ -1,0 +1,65 @@
+use nalgebra::{DefaultAllocator, Matrix3, Vector2};
+use wayfix_estimation_traits::{Angle, Pose2};
+use wayfix_sensor_log::{MeasuredQuantity, PoseMeasurement};
+use wayfix_slam_ekf::{
+    ExternalError, ExternalParams, HeadingSensor, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim,
+    PlanarRobot, PoseSensor, PositionSensor, RobotDim, SlamAlloc, SlamError,
+};
+
+use super::SlamEstimator;
+
+/// A measured pose in the frame of the map.
+///
+/// # Errors
+/// Returns an error if the frame, the datum or the covariance is unknown.
+pub(super) fn in_map(
+    measured: &PoseMeasurement,
+    params: &ExternalParams,
+    antenna: Vector2<f64>,
+) -> Result<MapMeasurement, ExternalError> {
+    let covariance = |position, heading| params.covariance(measured.covariance, position, heading);
+    let at = |position| {
+        let covariance = covariance(true, false)?.fixed_view::<2, 2>(0, 0).into_owned();
+        Ok(MapMeasurement::Position(PositionSensor { antenna, covariance }, position))
+    };
+    if let MeasuredQuantity::Geodetic { latitude, longitude } = measured.quantity {
+        return at(params.position(latitude, longitude)?);
+    }
+    params.check_frame(&measured.frame)?;
+    match measured.quantity {
+        MeasuredQuantity::Geodetic { .. } => Err(ExternalError::Datum),
+        MeasuredQuantity::Position(position) => at(position),
+        MeasuredQuantity::Heading(heading) => {
+            let variance = covariance(false, true)?.m33;
+            Ok(MapMeasurement::Heading(HeadingSensor { variance }, Angle::new(heading)))
+        }
+        MeasuredQuantity::Pose(pose) => {
+            Ok(MapMeasurement::Pose(PoseSensor { covariance: covariance(true, true)? }, pose))
+        }
+    }
+}
+
+impl<M: LandmarkModel<Robot: PlanarRobot>> SlamEstimator<M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// Corrects robot and map by a measurement that was made after a motion from the filter's state. An outlier is counted.
+    pub(super) fn update_moved(
+        &mut self,
+        measurement: &MapMeasurement,
+        motion: Pose2<f64>,
+        covariance: Matrix3<f64>,
+    ) -> Result<(), String> {
+        match self.filter.update_moved(measurement, motion, covariance) {
+            Ok(innovation) => {
+                self.record_robot(&innovation.jacobian, &innovation.covariance);
+                self.events.count("measurement_accepted");
+            }
+            Err(outlier @ SlamError::Outlier { .. }) => {
+                self.events.refuse("measurement_gated", format!("a measured pose is {outlier}"));
+            }
+            Err(error) => return Err(error.to_string()),
+        }
+        Ok(())
+    }
+}

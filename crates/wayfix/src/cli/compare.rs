@@ -1,0 +1,127 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use anyhow::{Context, Result, ensure};
+use wayfix_evaluation::{
+    report::{FullReport, Metric, PeerValue, ReportRun, ReportSuite, table, table::TableStyle},
+    terminal::print,
+};
+
+/// Compare two reports: the figures of B with those of A beside them.
+///
+/// Runs are matched by name; two reports of one run each are compared whatever its name. Figures that only one report has are left out, and
+/// counted.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// The report to compare with: a folder of `--out`, or its report.json.
+    a: PathBuf,
+    /// The report whose figures are judged.
+    b: PathBuf,
+    /// Show the figures that are equal too.
+    #[arg(long)]
+    all: bool,
+    /// Folder for a page with the same comparison.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix compare monday tuesday
+  wayfix compare target/before target/regress --out target/comparison";
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let (a, b) = (read(&arguments.a)?, read(&arguments.b)?);
+    let compared = compared(&a, &b, &arguments.a.display().to_string(), arguments.all);
+    ensure!(!compared.suites.is_empty() || has_common_run(&a, &b), "the two reports have no run in common");
+    if let Some(out) = &arguments.out {
+        compared.write(out)?;
+    }
+    let n_changed: usize = compared.runs().map(|(_, run)| run.metrics.len()).sum();
+    print(table::report(&compared, TableStyle::of_stdout()))?;
+    print(format!("{n_changed} figures {}\n", if arguments.all { "in both" } else { "differ" }))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn read(path: &Path) -> Result<FullReport> {
+    let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
+    let text = fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+    serde_json::from_slice(&text).with_context(|| format!("{} is no report", file.display()))
+}
+
+/// The report of B, with the figures of A as those of another program.
+fn compared(a: &FullReport, b: &FullReport, name: &str, all: bool) -> FullReport {
+    let suite = |suite: &ReportSuite| {
+        let runs = suite.runs.iter().filter_map(|run| {
+            let other = counterpart(a, b, &suite.name, run)?;
+            let metrics: Vec<Metric> =
+                run.metrics.iter().filter_map(|metric| beside(metric, other, name, all)).collect();
+            let n_alone = run.metrics.iter().filter(|metric| value_in(other, &metric.name).is_none()).count();
+            let notes = (n_alone > 0).then(|| format!("{n_alone} figures are in B only."));
+            let kept = ReportRun {
+                figures: Vec::new(),
+                timings: Vec::new(),
+                log: None,
+                layout: None,
+                ..run.clone()
+            };
+            Some(ReportRun { metrics, notes: notes.into_iter().collect(), ..kept })
+        });
+        let runs: Vec<ReportRun> = runs.filter(|run| !run.metrics.is_empty()).collect();
+        (!runs.is_empty()).then(|| ReportSuite { name: suite.name.clone(), runs })
+    };
+    FullReport { suites: b.suites.iter().filter_map(suite).collect(), ..b.clone() }
+}
+
+fn counterpart<'a>(a: &'a FullReport, b: &FullReport, suite: &str, run: &ReportRun) -> Option<&'a ReportRun> {
+    let by_name = a.runs().find(|(other_suite, other)| *other_suite == suite && other.name == run.name);
+    let alone = || (a.runs().count() == 1 && b.runs().count() == 1).then(|| a.runs().next()).flatten();
+    by_name.or_else(alone).map(|(_, other)| other)
+}
+
+fn has_common_run(a: &FullReport, b: &FullReport) -> bool {
+    b.runs().any(|(suite, run)| counterpart(a, b, suite, run).is_some())
+}
+
+fn value_in(run: &ReportRun, name: &str) -> Option<f64> {
+    run.metrics.iter().find(|metric| metric.name == name).map(|metric| metric.value)
+}
+
+/// The figure with that of the other run; `None` if the other lacks it, or if they are equal and only differences count.
+fn beside(metric: &Metric, other: &ReportRun, name: &str, all: bool) -> Option<Metric> {
+    let value = value_in(other, &metric.name)?;
+    let is_equal = value == metric.value || value.is_nan() && metric.value.is_nan();
+    (all || !is_equal)
+        .then(|| Metric { peer: Some(PeerValue { name: name.to_owned(), value }), ..metric.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(run: &str, values: &[(&str, f64)]) -> FullReport {
+        let metrics = values.iter().map(|(name, value)| Metric::new(*name, *value, "m")).collect();
+        let run = ReportRun { name: run.to_owned(), metrics, ..ReportRun::default() };
+        FullReport {
+            suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }],
+            ..FullReport::default()
+        }
+    }
+
+    #[test]
+    fn figures_that_differ_stand_beside_each_other() {
+        let a = report("monday", &[("ate_rmse_m", 0.2), ("n_landmarks", 15.0)]);
+        let b = report("tuesday", &[("ate_rmse_m", 0.1), ("n_landmarks", 15.0), ("nees_mean", 3.0)]);
+        let found = compared(&a, &b, "A", false);
+        let run = &found.suites[0].runs[0];
+        assert_eq!(run.metrics.len(), 1);
+        assert_eq!((run.metrics[0].value, run.metrics[0].peer.as_ref().unwrap().value), (0.1, 0.2));
+        assert_eq!(run.notes, ["1 figures are in B only."]);
+        assert_eq!(compared(&a, &b, "A", true).suites[0].runs[0].metrics.len(), 2);
+        assert!(compared(&a, &a, "A", false).suites.is_empty() && has_common_run(&a, &a));
+    }
+}

@@ -1,0 +1,225 @@
+use std::{
+    collections::BTreeMap,
+    fs::{self, File},
+    io::BufWriter,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use anyhow::{Context, Result, anyhow, ensure};
+use wayfix_evaluation::{
+    plot::{MapPlot, SvgPlot},
+    report::{FullReport, MachineInfo, Metric, ReportRun, ReportSuite, RunSummary, table, table::TableStyle},
+    terminal::{print, print_message},
+};
+use wayfix_sensor_log::read_text;
+use wayfix_smoother::{
+    Method, Params, Stop,
+    g2o::{self, G2o, G2oError, PoseGraph, Repair, RigidPose},
+};
+use wayfix_systems::system::Stopwatch;
+
+/// Optimize a pose graph in the format of g2o: the poses that fit the measurements best.
+///
+/// The cost is Σ eᵀΩe over all edges, with e the logarithm in SE(2) or SE(3) of the difference between measurement and poses, and Ω the
+/// information matrix of the edge. Where the model is right, it is about the number of rows of all edges minus that of all poses.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// The graph: a .g2o file of 2-d or 3-d poses and landmarks; may be compressed with gzip.
+    graph: PathBuf,
+    /// Write the optimized graph to this file, as g2o text.
+    #[arg(long, value_name = "FILE")]
+    graph_out: Option<PathBuf>,
+    /// Folder for index.html, report.json and pictures before and after.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON object instead of a table: `{"metrics": {name: number}, "events": {name: count}, "seed": n}`.
+    #[arg(long)]
+    json: bool,
+    /// Where to start: at the poses of the file, or at a linear solution for rotations and then positions, which a bad start cannot mislead.
+    #[arg(long, value_enum, default_value_t = Start::Linear)]
+    start: Start,
+    /// How to take a step.
+    #[arg(long, value_enum, default_value_t = StepMethod::LevenbergMarquardt)]
+    method: StepMethod,
+    /// Most iterations.
+    #[arg(long, value_name = "N", default_value_t = Params::default().max_iterations)]
+    max_iterations: usize,
+    /// A vertex that stays, beside those of FIX lines; may be repeated [default: the first pose, if the file fixes none].
+    #[arg(long, value_name = "ID")]
+    fix: Vec<u64>,
+    /// Set negative eigenvalues of information matrices to 0 instead of refusing them.
+    #[arg(long)]
+    repair: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Start {
+    File,
+    Linear,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum StepMethod {
+    GaussNewton,
+    LevenbergMarquardt,
+    Dogleg,
+}
+
+const EXAMPLES: &str = "\
+Lines of the file:
+  VERTEX_SE2 id x y θ                              EDGE_SE2 i j x y θ I11 I12 I13 I22 I23 I33
+  VERTEX_SE3:QUAT id x y z qx qy qz qw             EDGE_SE3:QUAT i j x y z qx qy qz qw I11 I12 … I66
+  VERTEX_XY id x y                                 EDGE_SE2_XY i j x y I11 I12 I22
+  VERTEX_TRACKXYZ id x y z                         EDGE_SE3_TRACKXYZ i j sensor x y z I11 … I33
+  FIX id …                                         PARAMS_SE3OFFSET sensor x y z qx qy qz qw
+Without VERTEX lines the poses come from dead reckoning along the edges.
+
+Figures:
+  start_cost   cost at the poses of the file      cost         cost at the end
+  iterations   linearizations                     time_ms      start and optimization, without reading and building the graph
+
+Examples:
+  wayfix optimize manhattan.g2o.gz
+  wayfix optimize torus3D.g2o --graph-out torus3D-optimized.g2o --out results
+  wayfix optimize two-floors.g2o --fix 0 --fix 1000
+  wayfix optimize cubicle.g2o.gz --repair --json";
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let path = &arguments.graph;
+    let text = read_text(path)?;
+    let file = g2o::read(text.as_bytes()).with_context(|| path.display().to_string())?;
+    drop(text);
+    match file {
+        G2o::Planar(graph) => optimize(graph, &arguments),
+        G2o::Spatial(graph) => optimize(graph, &arguments),
+    }
+}
+
+fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Result<ExitCode> {
+    let name = arguments.graph.display().to_string();
+    let mut warnings = Vec::new();
+    for id in &arguments.fix {
+        let is_there = file.poses.iter().any(|(known, _)| known == id)
+            || file.points.iter().any(|(known, _)| known == id);
+        ensure!(is_there, "{name}: there is no vertex {id} to fix");
+    }
+    file.fixed.extend(&arguments.fix);
+    if let (true, Some((id, _))) = (file.fixed.is_empty(), file.poses.first()) {
+        warnings.push(format!("no vertex is fixed: vertex {id} stays where it is"));
+    }
+    if file.is_dead_reckoned {
+        warnings.push("no VERTEX lines: the start is dead reckoning".to_owned());
+    }
+    let repair = if arguments.repair { Repair::ClipEigenvalues } else { Repair::Refuse };
+    let mut problem = file.problem(repair).map_err(|error| match error {
+        G2oError::Indefinite { .. } => anyhow!("{name}: {error}; --repair does that"),
+        other => anyhow!(other).context(name.clone()),
+    })?;
+    if problem.n_repaired > 0 {
+        let n = problem.n_repaired;
+        warnings.push(format!(
+            "{n} information matrices are indefinite: their negative eigenvalues are set to 0"
+        ));
+    }
+    let start_cost = problem.graph.cost();
+    let params = Params {
+        method: match arguments.method {
+            StepMethod::GaussNewton => Method::GaussNewton,
+            StepMethod::LevenbergMarquardt => Method::LevenbergMarquardt,
+            StepMethod::Dogleg => Method::Dogleg,
+        },
+        max_iterations: arguments.max_iterations,
+        ..Params::default()
+    };
+
+    let stopwatch = Stopwatch::start();
+    let is_linear = matches!(arguments.start, Start::Linear) && problem.start_linearly(&file)?;
+    let result = problem.graph.optimize(&params);
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let summary = result.map_err(|error| problem.named(&file, error)).with_context(|| name.clone())?;
+    if summary.stop == Stop::IterationLimit {
+        warnings.push(format!("not converged after {} iterations", summary.iterations));
+    }
+    if !is_linear && matches!(arguments.start, Start::Linear) {
+        warnings.push("there is no linear start: edges between poses do not reach all of them".to_owned());
+    }
+
+    let before = picture(&file, format!("Before: cost {start_cost:.6}"));
+    problem.store(&mut file)?;
+    let run = ReportRun {
+        name,
+        metrics: vec![
+            Metric::new("cost", summary.cost, ""),
+            Metric::new("start_cost", start_cost, ""),
+            Metric::new("iterations", summary.iterations as f64, ""),
+            Metric::new("n_poses", file.poses.len() as f64, ""),
+            Metric::new("n_landmarks", file.points.len() as f64, ""),
+            Metric::new("n_edges", (file.edges.len() + file.point_edges.len()) as f64, ""),
+        ],
+        seconds,
+        timings: vec![Metric::new("time_ms", seconds * 1e3, "ms")],
+        events: BTreeMap::from([("repaired_information".to_owned(), problem.n_repaired as u64)]),
+        warnings,
+        ..ReportRun::default()
+    };
+    if let Some(path) = &arguments.graph_out {
+        let cannot = || format!("cannot write {}", path.display());
+        file.write(BufWriter::new(File::create(path).with_context(cannot)?)).with_context(cannot)?;
+    }
+    let after = picture(&file, format!("After: cost {:.6}", summary.cost));
+    show(run, arguments, [before, after])?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Poses in the order of the file, with the edges that close loops beneath.
+fn picture<P: RigidPose>(file: &PoseGraph<P>, title: String) -> MapPlot {
+    let at = |pose: &P| {
+        let position = pose.translation_part();
+        (position.x, position.y)
+    };
+    let closures = file.edges.iter().filter(|edge| edge.from.abs_diff(edge.to) != 1);
+    let ends = |edge: &g2o::Edge<P>| vec![at(&file.poses[edge.from].1), at(&file.poses[edge.to].1)];
+    let landmark = |point: &P::Point| {
+        let coordinates = P::coordinates(point);
+        (coordinates[0], coordinates[1])
+    };
+    MapPlot {
+        title,
+        estimate: file.poses.iter().map(|(_, pose)| at(pose)).collect(),
+        surroundings: closures.map(ends).collect(),
+        references: file.points.iter().map(|(_, point)| landmark(point)).collect(),
+        ..MapPlot::default()
+    }
+}
+
+fn show(mut run: ReportRun, arguments: &Arguments, maps: [MapPlot; 2]) -> Result<()> {
+    for warning in &run.warnings {
+        print_message(format!("note: {warning}"));
+    }
+    let figures = if arguments.json {
+        serde_json::to_string(&RunSummary::new(&run, 0))? + "\n"
+    } else {
+        table::run(&run, TableStyle::of_stdout())
+    };
+    if let Some(out) = &arguments.out {
+        run.figures = maps.iter().map(MapPlot::draw).collect::<Result<Vec<SvgPlot>, _>>()?;
+        write_report(out, run)?;
+    }
+    print(figures)?;
+    Ok(())
+}
+
+fn write_report(out: &Path, run: ReportRun) -> Result<()> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    for (name, figure) in ["before.svg", "after.svg"].iter().zip(&run.figures) {
+        let path = out.join(name);
+        fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    let suites = vec![ReportSuite { name: "optimize".to_owned(), runs: vec![run] }];
+    FullReport { suites, seed: 0, commit: None, machine: MachineInfo::detect(), pending: Vec::new() }
+        .write(out)?;
+    print_message(format!("wrote index.html, report.json, before.svg and after.svg to {}", out.display()));
+    Ok(())
+}

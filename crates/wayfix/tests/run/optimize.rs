@@ -1,0 +1,84 @@
+//! `wayfix optimize` from outside.
+
+#![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
+
+use std::fs;
+
+use super::common::{Scratch, wayfix};
+
+/// A square whose last edge closes a loop that does not quite fit.
+const SQUARE: &str = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.2 0 1.5\nVERTEX_SE2 2 1 1 3.1\nVERTEX_SE2 3 0 1 -1.6\nVERTEX_XY 9 1 2\n\
+    EDGE_SE2 0 1 1 0 1.57 10 0 0 10 0 10\nEDGE_SE2 1 2 1 0 1.57 10 0 0 10 0 10\nEDGE_SE2 2 3 1 0 1.57 10 0 0 10 0 10\n\
+    EDGE_SE2 3 0 1.1 0 1.57 10 0 0 10 0 10\nEDGE_SE2_XY 0 9 1 2 10 0 10\n";
+
+#[test]
+fn optimized_graph_has_the_figures_and_is_its_own_optimum() {
+    let scratch = Scratch::new();
+    let (graph, better, out) =
+        (scratch.file("square.g2o", SQUARE), scratch.path("better.g2o"), scratch.path("out"));
+    let [graph, better, out] = [&graph, &better, &out].map(|path| path.to_str().unwrap());
+    let first = wayfix(["optimize", graph, "--json", "--graph-out", better, "--out", out]);
+    assert_eq!(first.code, 0, "{}", first.stderr);
+    assert!(first.stderr.contains("no vertex is fixed: vertex 0 stays"), "{}", first.stderr);
+    let (start, cost) = (first.metric("start_cost"), first.metric("cost"));
+    assert!(cost > 0.0 && cost < 0.1 && start > 10.0 * cost, "{start} {cost}");
+    assert!(first.metric("iterations") >= 1.0 && first.metric("time_ms") > 0.0);
+    for file in ["index.html", "report.json", "before.svg", "after.svg"] {
+        assert!(fs::metadata(format!("{out}/{file}")).unwrap().len() > 100, "{file}");
+    }
+    let again = wayfix(["optimize", better, "--json", "--start", "file"]);
+    assert!((again.metric("start_cost") / cost - 1.0).abs() < 1e-9 && again.metric("iterations") <= 2.0);
+}
+
+#[test]
+fn methods_and_starts_agree() {
+    let scratch = Scratch::new();
+    let graph = scratch.file("square.g2o", SQUARE);
+    let cost = |extra: [&str; 4]| {
+        let arguments = ["optimize", graph.to_str().unwrap(), "--json"].into_iter().chain(extra);
+        wayfix(arguments).metric("cost")
+    };
+    let expected = cost(["--start", "linear", "--method", "levenberg-marquardt"]);
+    for method in ["gauss-newton", "dogleg", "levenberg-marquardt"] {
+        for start in ["file", "linear"] {
+            assert!(
+                (cost(["--start", start, "--method", method]) / expected - 1.0).abs() < 1e-6,
+                "{method} {start}"
+            );
+        }
+    }
+}
+
+#[test]
+fn bad_graphs_are_refused_with_the_line_or_the_vertex() {
+    let scratch = Scratch::new();
+    let two_parts =
+        format!("{SQUARE}VERTEX_SE2 20 0 0 0\nVERTEX_SE2 21 1 0 0\nEDGE_SE2 20 21 1 0 0 1 0 0 1 0 1\n");
+    let indefinite =
+        SQUARE.replace("EDGE_SE2 3 0 1.1 0 1.57 10 0 0 10 0 10", "EDGE_SE2 3 0 1.1 0 1.57 10 0 0 10 0 -10");
+    let cases = [
+        ("nan.g2o", SQUARE.replace("1.1 0 1.57", "nan 0 1.57"), "line 9: `nan` is not a finite number"),
+        ("parts.g2o", two_parts.clone(), "3 directions"),
+        ("parts.g2o", two_parts.clone(), "vertex 20"),
+        ("indefinite.g2o", indefinite.clone(), "1 of 5 information matrices are indefinite"),
+        ("empty.g2o", "\n".to_owned(), "no edges"),
+    ];
+    for (name, text, expected) in cases {
+        let path = scratch.file(name, text);
+        let outcome = wayfix(["optimize", path.to_str().unwrap()]);
+        assert_eq!(outcome.code, 1, "{name}");
+        assert!(outcome.stderr.contains(expected), "{name}: {}", outcome.stderr);
+    }
+    let path = scratch.file("parts.g2o", two_parts);
+    let held = wayfix(["optimize", path.to_str().unwrap(), "--json", "--fix", "0", "--fix", "20"]);
+    assert!(held.metric("cost") < 0.1, "{}", held.stderr);
+    let path = scratch.file("indefinite.g2o", indefinite);
+    let repaired = wayfix(["optimize", path.to_str().unwrap(), "--json", "--repair"]);
+    assert!(
+        repaired.code == 0 && repaired.stderr.contains("1 information matrices are indefinite"),
+        "{}",
+        repaired.stderr
+    );
+    assert_eq!(repaired.json()["events"]["repaired_information"], 1);
+    assert_eq!(wayfix(["optimize", "absent.g2o"]).code, 1);
+}
