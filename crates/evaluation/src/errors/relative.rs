@@ -5,7 +5,7 @@ use super::PoseWithTruth;
 /// Errors of the motion between poses, which no alignment of the whole path changes. [Sturm et al. 2012, relative pose error]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelativeErrors {
-    /// Mean distance between estimated and true motion, per metre of the true path, m/m; `None` if the path is shorter than a metre.
+    /// Mean distance between estimated and true motion, per m of the true path, m/m; `None` if the path is shorter than 1 m.
     pub per_meter: Option<f64>,
     /// Mean heading error of the motion, per radian that the true heading turned, rad/rad; `None` if it turned less than a radian.
     pub per_radian: Option<f64>,

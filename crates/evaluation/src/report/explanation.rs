@@ -18,7 +18,7 @@ const MEANINGS: [(&str, &str); 47] = [
         "absolute trajectory error: root mean square after the best rigid alignment of the path",
     ),
     ("ate_rmse_m", "absolute trajectory error: root mean square, start pose given, no alignment"),
-    ("rpe_m_per_m", "relative pose error: mean error of the motion, per metre driven"),
+    ("rpe_m_per_m", "relative pose error: mean error of the motion, per m driven"),
     ("rpe_rad_per_rad", "relative pose error: mean heading error of the motion, per radian turned"),
     ("heading_rmse_deg", "root mean square error of the heading"),
     ("heading_mean_deg", "mean error of the heading"),
