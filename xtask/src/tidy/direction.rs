@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 18] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -22,6 +22,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 18] = [
     ("sensor-log", &["estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
     ("evaluation", &["estimation-traits", "gaussian-core", "sensor-log"]),
+    ("table-log", &["estimation-traits", "evaluation", "sensor-log"]),
     (
         "systems",
         &[
@@ -38,6 +39,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 18] = [
             "scene-sim",
             "sensor-log",
             "slam-ekf",
+            "table-log",
             "visual-tracking",
         ],
     ),

@@ -1,6 +1,6 @@
 //! Appearance maps with [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer): learn places, recognize them and forget them.
 //!
-//! A [`CmlRunPlan`] of a log or of a [`PosedFrameFolder`](recording::PosedFrameFolder) selects the views to learn and to localize, [`run`] executes it with a
+//! A [`CmlRunPlan`] of a log or of a [`PosedFrameFolder`](wayfix_table_log::PosedFrameFolder) selects the views to learn and to localize, [`run`] executes it with a
 //! [`CmlSystem`], [`summarize`] gives the figures and [`plots`] the pictures.
 
 mod estimates;
@@ -10,10 +10,10 @@ mod params;
 mod plan;
 mod plots;
 mod reader;
-pub mod recording;
 mod run;
 mod saved;
 mod system;
+mod turn_evidence;
 
 pub use wayfix_evaluation::plot::histogram;
 

@@ -4,12 +4,12 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{
-    CmlParams, ViewDescriptorReader,
-    recording::{AzimuthDirectionEvidence, HeadingSource, PosedFrame, PosedFrameFolder, path, turn_evidence},
-    synthetic_odometry,
+    CmlParams, ViewDescriptorReader, synthetic_odometry,
+    turn_evidence::{AzimuthDirectionEvidence, turn_evidence},
 };
 use crate::system::{HeldVelocity, IncrementPlausibilityCheck, check_velocity};
 use wayfix_evaluation::errors::ReferencePath;
+use wayfix_table_log::{HeadingSource, PosedFrame, PosedFrameFolder, poses};
 
 /// Contents of a run: the training views, and the records to process after training.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +63,7 @@ impl CmlRunPlan {
             );
         }
         let smoothing = params.synthetic_odometry.smoothing_frames;
-        let (_, along) = path::poses(&taught.frames, heading, smoothing);
+        let (_, along) = poses(&taught.frames, heading, smoothing);
         let images = taught.frames.iter().map(|frame| &frame.image);
         let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
         if let (HeadingSource::AlongPath, Some(evidence)) = (heading, evidence) {
@@ -83,13 +83,13 @@ impl CmlRunPlan {
         notes.push(describe_heading(heading).to_owned());
         notes.push(choose_sense(evidence, heading, params, camera));
 
-        let (measured, smooth) = path::poses(&recording.frames, heading, smoothing);
+        let (measured, smooth) = poses(&recording.frames, heading, smoothing);
         let increments = synthetic_odometry(&smooth, &params.synthetic_odometry.noise, seed);
         let is_taught =
             |index: usize| learn_from.is_none() && withhold > 0 && index % withhold != withhold - 1;
         let training_views = match learn_from {
             Some(other) => {
-                let (poses, _) = path::poses(&other.frames, heading, smoothing);
+                let (poses, _) = poses(&other.frames, heading, smoothing);
                 other.frames.iter().map(|frame| frame.image.clone()).zip(poses).collect()
             }
             None => {

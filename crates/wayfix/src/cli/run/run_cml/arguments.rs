@@ -10,7 +10,8 @@ use crate::cli::{
     common::Common,
     input::{Topics, name_of},
 };
-use wayfix_systems::cml::{CmlTask, recording::PoseTableColumns};
+use wayfix_systems::cml::CmlTask;
+use wayfix_table_log::PoseTableColumns;
 
 /// Appearance maps: learn places by panoramic images, and localize in the map.
 ///

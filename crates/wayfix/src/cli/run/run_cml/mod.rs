@@ -28,10 +28,10 @@ use wayfix_systems::{
     cml::{
         self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
         CmlTask, PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
-        recording::{PoseTables, PosedFrameFolder},
     },
     system::{RunStep, Stopwatch, System},
 };
+use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {

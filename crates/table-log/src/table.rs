@@ -2,7 +2,7 @@ use std::{fs, path::Path};
 
 use wayfix_sensor_log::{ReadReport, RowProblem, RowProblemKind};
 
-use super::{
+use crate::{
     RecordingError,
     columns::{Column, Columns},
 };

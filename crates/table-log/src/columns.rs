@@ -1,6 +1,6 @@
 use std::str::FromStr;
 
-use super::table::{Table, plain};
+use crate::table::{Table, plain};
 
 /// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,7 +3,7 @@ use std::path::Path;
 use wayfix_estimation_traits::wrap_angle;
 use wayfix_sensor_log::ReadReport;
 
-use super::{
+use crate::{
     RecordingError,
     columns::{Column, Columns, PoseTableColumns, Quantity},
     table::Table,
@@ -26,7 +26,7 @@ pub(super) struct PoseRow {
 /// The poses of a table, `None` for each unusable row. The report lists these rows and the assumed units.
 ///
 /// Column names come from the header, or from `names` for a table without one. The unit comes from the name; the default is SI.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     names: Option<&PoseTableColumns>,
     report: &mut ReadReport,

@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Pose2;
 
-use super::{PosedFrame, smoothed, smoothing_of};
+use crate::{PosedFrame, smoothed, smoothing_of};
 
 /// Source of the headings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl HeadingSource {
 
 /// Poses of the frames as measured, and smoothed by a Gaussian of `sigma` frames. Without `sigma`, it is estimated from the measurement noise
 /// of the path.
-pub(in crate::cml) fn poses(
+pub fn poses(
     frames: &[PosedFrame],
     heading: HeadingSource,
     sigma: Option<f64>,

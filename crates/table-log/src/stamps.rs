@@ -6,7 +6,7 @@ use std::{
 
 use wayfix_sensor_log::{ReadReport, is_hidden};
 
-use super::{
+use crate::{
     RecordingError,
     columns::{Columns, PoseTableColumns, Quantity},
     table::Table,
@@ -16,7 +16,7 @@ use super::{
 pub(super) type Stamps = BTreeMap<String, f64>;
 
 /// Reads a table with a named column of times and one of file names.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     names: Option<&PoseTableColumns>,
     report: &mut ReadReport,

@@ -1,10 +1,11 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
+use wayfix_estimation_traits::wrap_angle;
 use wayfix_sensor_log::{EncodedImage, ReadReport, RowProblem, RowProblemKind, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
-use super::{
+use crate::{
     RecordingError,
     columns::PoseTableColumns,
     poses::{self, PoseRow},
@@ -211,8 +212,8 @@ fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Plac
     let between = |early: f64, late: f64| early + share * (late - early);
     let heading = match (early.heading, late.heading) {
         (Some(early), Some(late)) => {
-            let turn = wayfix_estimation_traits::wrap_angle(late - early);
-            Some(wayfix_estimation_traits::wrap_angle(early + share * turn))
+            let turn = wrap_angle(late - early);
+            Some(wrap_angle(early + share * turn))
         }
         _ => None,
     };

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::wrap_angle;
 
 /// Agreement of the turns in the views with those of the path: mean disagreement, rad, with descriptors of clockwise columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AzimuthDirectionEvidence {
+pub(super) struct AzimuthDirectionEvidence {
     /// If columns run clockwise.
     pub clockwise: f64,
     /// If columns run counterclockwise.
@@ -29,23 +29,26 @@ const N_COMPARED: usize = 400;
 
 impl AzimuthDirectionEvidence {
     /// Whether the camera clearly never turns.
-    pub fn is_fixed(&self) -> bool {
+    pub(super) fn is_fixed(&self) -> bool {
         self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
     }
 
     /// Whether the turns of the views are unrelated to the path.
-    pub fn is_unrelated(&self) -> bool {
+    pub(super) fn is_unrelated(&self) -> bool {
         self.fixed.min(self.clockwise).min(self.counterclockwise) > UNRELATED
     }
 
     /// Whether columns run counterclockwise.
-    pub fn is_counterclockwise(&self) -> bool {
+    pub(super) fn is_counterclockwise(&self) -> bool {
         self.counterclockwise < self.clockwise
     }
 }
 
 /// Compares the turns between successive views with the headings of a path; `None` if too few pairs of the same place turn.
-pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<AzimuthDirectionEvidence> {
+pub(super) fn turn_evidence(
+    views: &[PanoramaDescriptor],
+    headings: &[f64],
+) -> Option<AzimuthDirectionEvidence> {
     let n = views.len().min(headings.len());
     let alike = ALIKE * typical_distance(&views[..n])?;
     let pairs = LAGS.iter().flat_map(|lag| {
