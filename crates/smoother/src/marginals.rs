@@ -54,6 +54,11 @@ impl Marginals<'_> {
         Ok((&joint + joint.transpose()) * 0.5)
     }
 
+    /// $`\ln \det H`$ over all coordinates that are not fixed: with the cost it tells how likely the noise parameters are (Laplace).
+    pub fn log_determinant(&self) -> f64 {
+        self.structure.cholesky.pivots().iter().map(|pivot| pivot.ln()).sum()
+    }
+
     fn blocks(&self, rows: &[usize], columns: &[usize]) -> Result<DMatrix<f64>, SmootherError> {
         let (rows, columns) = (self.coordinates(rows)?, self.coordinates(columns)?);
         let n = self.structure.equations.gradient().len();

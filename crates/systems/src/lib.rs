@@ -3,6 +3,7 @@
 //! | module | system |
 //! | --- | --- |
 //! | [`slam`] | EKF-SLAM; [`points`] from range-bearing detections, [`walls`] from laser scans |
+//! | [`ranges`] | path and places of beacons from ranges, by a smoother |
 //! | [`lines`] | walls of single scans |
 //! | [`color`] | localization in a coloured map |
 //! | [`cml`] | localization and mapping by appearance |
@@ -15,6 +16,7 @@ pub mod cml;
 pub mod color;
 pub mod lines;
 pub mod points;
+pub mod ranges;
 pub mod saved;
 pub mod settings;
 pub mod slam;

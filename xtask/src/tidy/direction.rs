@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 20] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -13,6 +13,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
     ("line-extract", &[]),
     ("scan-match", &["estimation-traits"]),
     ("smoother", &["estimation-traits", "gaussian-core"]),
+    ("slam-smoother", &["estimation-traits", "gaussian-core", "smoother"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "integrity", "kalman", "particle", "color-map"]),
@@ -39,6 +40,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
             "scene-sim",
             "sensor-log",
             "slam-ekf",
+            "slam-smoother",
             "table-log",
             "visual-tracking",
         ],
@@ -49,7 +51,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
 const UNRESTRICTED: [&str; 3] = ["wayfix", "experiments", "xtask"];
 
 /// Crates that must not depend on images.
-const IMAGE_FREE: [&str; 9] = [
+const IMAGE_FREE: [&str; 10] = [
     "estimation-traits",
     "integrity",
     "gaussian-core",
@@ -58,6 +60,7 @@ const IMAGE_FREE: [&str; 9] = [
     "line-extract",
     "scan-match",
     "slam-ekf",
+    "slam-smoother",
     "smoother",
 ];
 

@@ -71,6 +71,22 @@ impl<R: Residual> Batch<R> {
         self.indices.append(&mut other.indices);
     }
 
+    pub(crate) fn set_information(
+        &mut self,
+        slot: usize,
+        information: Information<R>,
+    ) -> Result<(), SmootherError> {
+        let place = self.information.get_mut(slot).ok_or(SmootherError::UnknownId)?;
+        let n_entries = |matrix| R::Variables::information_entries(matrix).len();
+        let (expected, got) = (n_entries(place), n_entries(&information));
+        if expected != got {
+            let (expected, got) = ((expected, 1), (got, 1));
+            return Err(SmootherError::Shape { what: "the information", residual: self.indices[slot], expected, got });
+        }
+        *place = information;
+        Ok(())
+    }
+
     fn value(
         &self,
         slot: usize,

@@ -137,6 +137,20 @@ impl Graph {
         Ok(ResidualId { batch, slot, index })
     }
 
+    /// Replaces the information of a residual of type `R`; the structure is kept.
+    ///
+    /// # Errors
+    /// [`SmootherError::UnknownId`] if the residual is not of this type; else as [`add`](Self::add).
+    pub fn set_information<R: Residual>(
+        &mut self,
+        id: ResidualId,
+        information: Information<R>,
+    ) -> Result<(), SmootherError> {
+        information::check(R::Variables::information_entries(&information), id.index)?;
+        let batch = self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
+        batch.ok_or(SmootherError::UnknownId)?.set_information(id.slot, information)
+    }
+
     /// Gives a residual a robust kernel.
     ///
     /// # Errors

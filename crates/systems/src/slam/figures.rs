@@ -23,7 +23,7 @@ pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metri
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
-    let mut metrics = path_metrics(run);
+    let mut metrics = path_metrics(&run.samples(), run.truth.is_estimate());
     metrics.extend(of_map);
     let n_landmarks = run.system.filter().n_landmarks();
     let events = run.events();
@@ -37,11 +37,10 @@ where
 }
 
 /// Errors of the path and of odometry alone. Names as in the contract of `docs/architecture.md`.
-fn path_metrics<F: FrontEnd, T>(run: &SlamRun<F, T>) -> Vec<Metric>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
-{
-    let samples = run.samples();
+pub(crate) fn path_metrics(
+    samples: &[(StampedEstimate, PoseWithTruth)],
+    truth_is_estimate: bool,
+) -> Vec<Metric> {
     let errors_of = |samples: Vec<PoseWithTruth>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
     let of_filter: Vec<PoseWithTruth> = samples.iter().map(|(_, sample)| *sample).collect();
@@ -52,7 +51,7 @@ where
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
         metrics.extend(relative.per_meter.map(|error| Metric::new("rpe_m_per_m", error, "m/m")));
         metrics.extend(relative.per_radian.map(|error| Metric::new("rpe_rad_per_rad", error, "rad/rad")));
-        let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
+        let nees = errors.nees_mean.filter(|_| !truth_is_estimate);
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
     let reckoned = |(at, sample): &(StampedEstimate, PoseWithTruth)| PoseWithTruth {
@@ -81,7 +80,7 @@ fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &m
 }
 
 /// Mean, median and largest computing time of a step.
-fn timings(stamped_estimates: &[StampedEstimate]) -> Vec<Metric> {
+pub(crate) fn timings(stamped_estimates: &[StampedEstimate]) -> Vec<Metric> {
     let mut steps: Vec<f64> =
         stamped_estimates.iter().map(|stamped_estimate| stamped_estimate.step.as_secs_f64() * 1e6).collect();
     steps.sort_unstable_by(f64::total_cmp);

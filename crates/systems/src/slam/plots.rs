@@ -21,8 +21,19 @@ pub(crate) fn plots_with<F: FrontEnd, T>(run: &SlamRun<F, T>, map: MapPlot) -> R
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
-    let samples = run.samples();
     let estimates = run.system.stamped_estimates();
+    let mut plots = path_plots(&run.samples(), estimates, map, !run.truth.is_estimate())?;
+    plots.push(times(estimates).draw()?);
+    Ok(plots)
+}
+
+/// Path and `map`, and errors with their 3σ bands and NEES where there is truth.
+pub(crate) fn path_plots(
+    samples: &[(StampedEstimate, PoseWithTruth)],
+    estimates: &[StampedEstimate],
+    map: MapPlot,
+    has_nees: bool,
+) -> Result<Vec<SvgPlot>, PlotError> {
     let path = MapPlot {
         truth: samples
             .iter()
@@ -35,12 +46,10 @@ where
     };
     let mut plots = vec![path.draw()?];
     if !samples.is_empty() {
-        plots.push(errors(&samples).draw()?);
-        let has_nees = !run.truth.is_estimate();
-        let consistency = has_nees.then(|| consistency(&samples)).flatten();
+        plots.push(errors(samples).draw()?);
+        let consistency = has_nees.then(|| consistency(samples)).flatten();
         plots.extend(consistency.map(|plot| plot.draw()).transpose()?);
     }
-    plots.push(times(estimates).draw()?);
     Ok(plots)
 }
 

@@ -1,6 +1,6 @@
 use std::{path::PathBuf, process::ExitCode};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use nalgebra::DefaultAllocator;
 use serde::{Serialize, de::DeserializeOwned};
 use wayfix_evaluation::{
@@ -26,7 +26,11 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
-use super::{interrupt, run_walls};
+use super::{
+    interrupt,
+    run_ranges::{self, SlamLogFormat},
+    run_walls,
+};
 use crate::commented::commented;
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
@@ -52,9 +56,12 @@ pub(in crate::cli) struct Arguments {
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(in crate::cli) log: Vec<PathBuf>,
-    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: detected from the content].
+    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json, mcap or plaza [default: detected from the content].
     #[arg(long)]
-    pub(in crate::cli) format: Option<LogFormat>,
+    pub(in crate::cli) format: Option<SlamLogFormat>,
+    /// What estimates: a filter, or least squares over all poses of a window.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "ekf")]
+    pub(in crate::cli) estimator: EstimatorName,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     pub(in crate::cli) robot: Option<u32>,
@@ -94,6 +101,15 @@ pub(in crate::cli) struct Arguments {
     pub(in crate::cli) common: Common,
 }
 
+/// An estimator of SLAM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::cli) enum EstimatorName {
+    /// Extended Kalman filter.
+    Ekf,
+    /// Sparse least squares: ranges without bearings in one batch over the log.
+    Smoother,
+}
+
 const EXAMPLES: &str = "\
 Examples:
   wayfix run slam --log slam_100.txt                                    figures as a table
@@ -103,6 +119,7 @@ Examples:
   wayfix run slam --log my.mcap --params my.toml
   wayfix run slam --log monday.mcap --save floor.map --save-every 10
   wayfix run slam --log rosbag2_0.mcap --topic /scan_front              walls, from the laser and /odom
+  wayfix run slam --log plaza --estimator smoother                      ranges to beacons of unknown place
   wayfix run slam --log tuesday.mcap --resume floor.map --save floor.map
 
 A file of parameters names what differs from the defaults, for instance
@@ -115,8 +132,15 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params(&arguments, RobotProfile::Generic)?)?)?;
         return Ok(ExitCode::SUCCESS);
     }
+    arguments.check_estimator()?;
+    if let Some(folder) = run_ranges::folder(&arguments) {
+        return run_ranges::main(&arguments, folder);
+    }
     let options = LogOpenOptions {
-        format: arguments.format,
+        format: arguments.format.and_then(|format| match format {
+            SlamLogFormat::Log(format) => Some(format),
+            SlamLogFormat::Plaza => None,
+        }),
         robot: arguments.robot,
         topics: arguments.topics.topics.clone(),
         ..LogOpenOptions::default()
@@ -196,6 +220,17 @@ where
 }
 
 impl Arguments {
+    /// Refuses what the smoother cannot do.
+    fn check_estimator(&self) -> Result<()> {
+        if self.estimator == EstimatorName::Smoother {
+            ensure!(
+                self.save.is_none() && self.resume.is_none() && !self.observability,
+                "--save, --resume and --observability need --estimator ekf: the smoother has none of them yet"
+            );
+        }
+        Ok(())
+    }
+
     /// The map of `--resume`.
     pub(super) fn saved_map<R, L, S: FrontEndState>(&self) -> Result<Option<SlamState<R, L, S>>>
     where

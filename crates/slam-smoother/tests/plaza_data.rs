@@ -1,0 +1,82 @@
+//! Ranges of the Plaza 1 set [Djugash et al. 2009], when the folder of data is there (`WAYFIX_DATA`).
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
+use std::{collections::BTreeMap, path::Path};
+
+use nalgebra::{Matrix2, Vector2, Vector3};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_slam_smoother::range_only::{Range, RangeOnlyInput, RangeOnlyParams, estimate};
+
+/// A batch in GTSAM with four places and one bias reaches 0.20 m; a quarter more is allowed.
+const ALIGNED_RMSE: f64 = 0.25;
+
+#[test]
+fn plaza_path_without_any_start_for_the_beacons() {
+    let Some(folder) = std::env::var_os("WAYFIX_DATA").map(|data| Path::new(&data).join("plaza")) else { return };
+    if !folder.is_dir() {
+        return;
+    }
+    let odometry = rows(&folder.join("odometry.csv"));
+    let mut ranges = rows(&folder.join("ranges.csv"));
+    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let truth = rows(&folder.join("truth.csv"));
+    let beacons: BTreeMap<u32, Vector2<f64>> =
+        rows(&folder.join("beacons.csv")).iter().map(|row| (row[0] as u32, Vector2::new(row[1], row[2]))).collect();
+
+    // A pose for each row of odometry; a range is taken at the nearest row before it.
+    let (begin, end) = (odometry[0][0], odometry.last().unwrap()[0]);
+    let motions: Vec<_> =
+        odometry[1..].iter().map(|row| Pose2::exp(&Vector3::new(row[1], 0.0, row[2]))).collect();
+    let pose_at = |t: f64| odometry.partition_point(|row| row[0] <= t) - 1;
+    let used = ranges.iter().filter(|row| row[0] >= begin && row[0] <= end);
+    let ranges =
+        used.map(|row| Range { pose: pose_at(row[0]), beacon: row[1] as u32, range: row[2] }).collect();
+    let input = RangeOnlyInput { start: Pose2::identity(), motions, ranges };
+    let clock = std::time::Instant::now();
+    let found = estimate(&input, &RangeOnlyParams::default()).unwrap();
+    let seconds = clock.elapsed().as_secs_f64();
+
+    let true_at = |t: f64| {
+        let after = truth.partition_point(|row| row[0] < t).clamp(1, truth.len() - 1);
+        let (early, late) = (&truth[after - 1], &truth[after]);
+        let share = (t - early[0]) / (late[0] - early[0]);
+        Vector2::new(early[1] + share * (late[1] - early[1]), early[2] + share * (late[2] - early[2]))
+    };
+    let path: Vec<_> =
+        found.poses.iter().zip(&odometry).map(|(pose, row)| (pose.translation, true_at(row[0]))).collect();
+    let places: Vec<_> = found.beacons.iter().map(|(id, (place, _))| (*place, beacons[id])).collect();
+    println!(
+        "path {:.4} m, beacons {:.4} m, {seconds:.2} s, {:?} {:?} {} outliers of {}",
+        aligned_rmse(&path),
+        aligned_rmse(&places),
+        found.noise,
+        found.calibration,
+        found.n_outliers,
+        found.n_ranges
+    );
+    assert!(found.unplaced.is_empty() && found.beacons.len() == 4);
+    assert!(aligned_rmse(&path) <= ALIGNED_RMSE);
+}
+
+/// Error of `(estimate, truth)` after the best rigid motion, m. [Umeyama 1991]
+fn aligned_rmse(pairs: &[(Vector2<f64>, Vector2<f64>)]) -> f64 {
+    let n = pairs.len() as f64;
+    let mean = |of: fn(&(Vector2<f64>, Vector2<f64>)) -> Vector2<f64>| pairs.iter().map(of).sum::<Vector2<f64>>() / n;
+    let (a, b) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let h: Matrix2<f64> = pairs.iter().map(|(x, y)| (x - a) * (y - b).transpose()).sum();
+    let (sin, cos) = (h.m12 - h.m21).atan2(h.trace()).sin_cos();
+    let rotation = Matrix2::new(cos, -sin, sin, cos);
+    (pairs.iter().map(|(x, y)| (rotation * (x - a) + b - y).norm_squared()).sum::<f64>() / n).sqrt()
+}
+
+fn rows(path: &Path) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}

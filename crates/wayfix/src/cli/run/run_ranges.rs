@@ -1,0 +1,87 @@
+use std::{path::Path, process::ExitCode, str::FromStr};
+
+use anyhow::{Result, bail, ensure};
+use wayfix_evaluation::{report::ReportRun, terminal::print_message};
+use wayfix_sensor_log::LogFormat;
+use wayfix_systems::{
+    ranges,
+    system::{EventCounts, Stopwatch},
+};
+use wayfix_table_log::RangeRecording;
+
+use super::{
+    super::{input::name_of, outputs::Outputs, read_problems::add_read_problems},
+    run_slam::{self, EstimatorName},
+};
+
+/// How a log for `run slam` is stored.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::cli) enum SlamLogFormat {
+    /// As `wayfix info` reads it.
+    Log(LogFormat),
+    /// A folder of tables with ranges to radio beacons.
+    Plaza,
+}
+
+impl FromStr for SlamLogFormat {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "plaza" => Ok(Self::Plaza),
+            other => other
+                .parse()
+                .map(Self::Log)
+                .map_err(|error: <LogFormat as FromStr>::Err| format!("{error}, or plaza")),
+        }
+    }
+}
+
+/// The folder, if the log is one of ranges.
+pub(in crate::cli) fn folder(arguments: &run_slam::Arguments) -> Option<&Path> {
+    let [folder] = arguments.log.as_slice() else { return None };
+    let is_ranges = match arguments.format {
+        Some(format) => matches!(format, SlamLogFormat::Plaza),
+        None => RangeRecording::is_in(folder),
+    };
+    is_ranges.then_some(folder)
+}
+
+/// `wayfix run slam --estimator smoother` on ranges without bearings.
+pub(in crate::cli) fn main(arguments: &run_slam::Arguments, folder: &Path) -> Result<ExitCode> {
+    check(arguments)?;
+    let mut recording = RangeRecording::read(folder)?;
+    if !recording.report.is_clean() {
+        print_message(&recording.report);
+    }
+    let truth = arguments.truth.put_into(std::mem::take(&mut recording.truth))?;
+    let outputs = Outputs::open("slam", &arguments.common)?;
+    let stopwatch = Stopwatch::start();
+    let mut run = ranges::run(&recording, &truth)?;
+    let mut events: EventCounts = std::mem::take(&mut run.events);
+    let warnings = add_read_problems(&mut events, &recording.report);
+    run.events = events;
+    let summary = ReportRun {
+        name: name_of(&arguments.log),
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        warnings,
+        ..ranges::summarize(&run)
+    };
+    summary.notes.iter().for_each(print_message);
+    outputs.show(summary, || Ok(ranges::plots(&run)?))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses options that have no effect here.
+fn check(arguments: &run_slam::Arguments) -> Result<()> {
+    if arguments.estimator == EstimatorName::Ekf {
+        bail!("ranges without bearings need --estimator smoother: a single range does not start a landmark of the EKF");
+    }
+    ensure!(
+        arguments.common.params.is_none() && !arguments.common.print_params,
+        "runs on ranges have no parameters: noise, bias and scale come from the log"
+    );
+    ensure!(arguments.relations.is_none(), "--relations is for logs of scans");
+    ensure!(arguments.profile.is_none(), "--profile is for logs of range-bearing detections; noise comes from the log here");
+    Ok(())
+}
