@@ -12,6 +12,9 @@ use crate::SlamSmootherError;
 /// Ranges with outliers: 95 % of the efficiency of least squares when there are none.
 pub(super) const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 
+/// Relative decrease of the cost that ends an optimization for the likelihood: some thousand measurements cost about as much each as one.
+const LIKELIHOOD_DECREASE: f64 = 1e-5;
+
 /// Path, beacons and calibration, as far as they are known.
 #[derive(Clone, Debug)]
 pub(super) struct Solution {
@@ -88,7 +91,8 @@ impl RangeGraph {
 
     /// At the minimum with the present noise, up to a constant.
     pub(super) fn negative_log_likelihood(&mut self) -> Result<f64, SlamSmootherError> {
-        let cost = self.optimize()?.cost;
+        let params = Params { relative_decrease: LIKELIHOOD_DECREASE, ..Params::default() };
+        let cost = self.graph.optimize(&params)?.cost;
         let log_determinant = self.graph.marginals()?.log_determinant();
         let of_motion = 4.0 * self.noise.translation_per_sqrt_meter.ln()
             + 2.0 * self.noise.heading_per_sqrt_meter.ln();

@@ -61,7 +61,9 @@ pub struct RangeOnlyEstimate {
     pub calibration_sigma: Calibration,
     /// Noise by the likelihood of the measurements.
     pub noise: RangeOnlyNoise,
-    /// Ranges whose residual is beyond three standard deviations; the kernel limits their weight.
+    /// Standard deviation of the residuals of the ranges by their median, m.
+    pub range_sigma: f64,
+    /// Ranges whose residual is beyond three of these; the kernel limits their weight.
     pub n_outliers: usize,
     /// Ranges that were used.
     pub n_ranges: usize,
@@ -128,15 +130,16 @@ fn finish(
     let (pose_covariances, beacon_covariances) = graph.covariances(&chosen)?;
     let of_calibration = graph.calibration_covariance()?;
     let residuals = graph.range_residuals()?;
-    let noise = *graph.noise();
+    let range_sigma = sigma_of(residuals.clone());
     Ok(RangeOnlyEstimate {
         pose_covariances: chosen.into_iter().zip(pose_covariances).collect(),
         beacons: solution.beacons.iter().map(|(id, place)| (*id, (*place, beacon_covariances[id]))).collect(),
         unplaced,
         calibration: graph.calibration()?,
         calibration_sigma: of_calibration.diagonal().map(f64::sqrt).into(),
-        noise,
-        n_outliers: residuals.iter().filter(|residual| **residual > 3.0 * noise.range).count(),
+        noise: *graph.noise(),
+        range_sigma,
+        n_outliers: residuals.iter().filter(|residual| **residual > 3.0 * range_sigma).count(),
         n_ranges: graph.n_ranges(),
         poses: solution.poses,
     })

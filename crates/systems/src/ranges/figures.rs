@@ -29,7 +29,7 @@ pub fn summarize(run: &RangeRun) -> ReportRun {
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     metrics.push(Metric::new("range_bias_m", run.estimate.calibration.bias, "m"));
     metrics.push(Metric::new("range_scale", run.estimate.calibration.log_scale.exp(), ""));
-    metrics.push(Metric::new("range_sigma_m", run.estimate.noise.range, "m"));
+    metrics.push(Metric::new("range_sigma_m", run.estimate.range_sigma, "m"));
     let notes = vec!["A batch over the whole log: each pose uses all measurements. Step times are the batch's, spread over the poses.".to_owned()];
     let timings = timings(&run.stamped_estimates);
     ReportRun { metrics, timings, notes, events: run.events.counts(), ..ReportRun::default() }

@@ -70,7 +70,8 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
 }
 
 fn say_assumptions(estimate: &RangeOnlyEstimate, events: &mut EventCounts) {
-    let RangeOnlyNoise { translation_per_sqrt_meter, heading_per_sqrt_meter, range } = estimate.noise;
+    let RangeOnlyNoise { translation_per_sqrt_meter, heading_per_sqrt_meter, .. } = estimate.noise;
+    let range = estimate.range_sigma;
     let Calibration { bias, log_scale } = estimate.calibration;
     let sigma = estimate.calibration_sigma;
     events.warn(
