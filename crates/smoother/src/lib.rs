@@ -9,6 +9,7 @@
 //! | measure motions, absolute poses, landmarks | [`Between`], [`Prior`], [`RelativePosition`] |
 //! | measure something else | implement [`Residual`], check it by [`laws::residual`] |
 //! | tolerate outliers | [`Kernel`], [`Params::graduated`] |
+//! | keep a window of recent variables | [`Graph::marginalize`] |
 //! | know how certain the result is | [`Graph::marginals`] |
 //! | read a pose graph, start it linearly, write it | [`g2o`] |
 //!
@@ -31,7 +32,7 @@ mod variable;
 mod variable_tuple;
 
 pub use error::SmootherError;
-pub use graph::{Graph, ResidualId};
+pub use graph::{Graph, Marginalized, ResidualId};
 pub use kernel::Kernel;
 pub use marginals::Marginals;
 pub use optimize::{Method, Params, Stop, Summary};

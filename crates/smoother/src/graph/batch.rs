@@ -1,6 +1,8 @@
 use std::any::Any;
 
-use super::{keys::Keys, values::Values};
+use nalgebra::{DMatrix, DVector};
+
+use super::{dense_quadratic::DenseQuadratic, keys::Keys, values::Values};
 use crate::{
     Information, Kernel, Residual, SmootherError, VariableTuple,
     linear::{block_address::BlockAddress, normal_equations::NormalEquations},
@@ -22,7 +24,8 @@ pub(crate) trait AnyBatch: Send {
     fn len(&self) -> usize;
     /// Numbers of the variables of each residual.
     fn variables(&self) -> Box<dyn Iterator<Item = &[usize]> + '_>;
-    fn set_kernel(&mut self, slot: usize, kernel: Kernel);
+    /// Whether there is a residual of this number; it has the kernel then.
+    fn set_kernel(&mut self, index: usize, kernel: Kernel) -> bool;
     /// $`\sum ρ(r^T Ω r)`$
     fn cost(&self, values: &Values, mu: f64) -> f64;
     /// The largest squared norm in units of $`c^2`$ among those with a Geman–McClure kernel.
@@ -38,8 +41,18 @@ pub(crate) trait AnyBatch: Send {
     ) -> f64;
     /// Checks shapes, and that everything is a finite number.
     fn check(&self, values: &Values) -> Result<(), SmootherError>;
-    /// Squared norms by number of the residual.
-    fn squared_norms(&self, values: &Values, into: &mut [f64]);
+    /// Numbers of the residuals with their squared norms.
+    fn squared_norms(&self, values: &Values, into: &mut Vec<(usize, f64)>);
+    /// Adds the residuals that name a chosen variable to a dense quadratic.
+    fn linearize_chosen(&self, values: &Values, chosen: &[bool], dense: &mut DenseQuadratic);
+    /// Removes the residuals that name a chosen variable; how many.
+    fn remove_chosen(&mut self, chosen: &[bool]) -> usize;
+    /// Removes the residual of this number; whether there was one.
+    fn remove(&mut self, index: usize) -> bool;
+    /// Whether these are what earlier marginalizations left.
+    fn is_of_marginalization(&self) -> bool {
+        false
+    }
 }
 
 impl<R: Residual> Default for Batch<R> {
@@ -73,18 +86,38 @@ impl<R: Residual> Batch<R> {
 
     pub(crate) fn set_information(
         &mut self,
-        slot: usize,
+        index: usize,
         information: Information<R>,
     ) -> Result<(), SmootherError> {
-        let place = self.information.get_mut(slot).ok_or(SmootherError::UnknownId)?;
+        let slot = self.slot(index).ok_or(SmootherError::UnknownId)?;
         let n_entries = |matrix| R::Variables::information_entries(matrix).len();
-        let (expected, got) = (n_entries(place), n_entries(&information));
+        let (expected, got) = ((n_entries(&self.information[slot]), 1), (n_entries(&information), 1));
         if expected != got {
-            let (expected, got) = ((expected, 1), (got, 1));
-            return Err(SmootherError::Shape { what: "the information", residual: self.indices[slot], expected, got });
+            return Err(SmootherError::Shape { what: "the information", residual: index, expected, got });
         }
-        *place = information;
+        self.information[slot] = information;
         Ok(())
+    }
+
+    /// Numbers grow from slot to slot.
+    fn slot(&self, index: usize) -> Option<usize> {
+        self.indices.binary_search(&index).ok()
+    }
+
+    fn keep(&mut self, is_kept: &[bool]) {
+        fn kept<T>(all: &mut Vec<T>, is_kept: &[bool]) {
+            let mut is_kept = is_kept.iter();
+            all.retain(|_| is_kept.next().is_none_or(|kept| *kept));
+        }
+        kept(&mut self.residuals, is_kept);
+        kept(&mut self.keys, is_kept);
+        kept(&mut self.information, is_kept);
+        kept(&mut self.kernels, is_kept);
+        kept(&mut self.indices, is_kept);
+    }
+
+    fn is_chosen(&self, slot: usize, chosen: &[bool]) -> bool {
+        self.keys[slot].indices[..R::Variables::ARITY].iter().any(|variable| chosen[*variable])
     }
 
     fn value(
@@ -110,8 +143,12 @@ impl<R: Residual> AnyBatch for Batch<R> {
     fn variables(&self) -> Box<dyn Iterator<Item = &[usize]> + '_> {
         Box::new(self.keys.iter().map(|keys| &keys.indices[..R::Variables::ARITY]))
     }
-    fn set_kernel(&mut self, slot: usize, kernel: Kernel) {
-        self.kernels[slot] = kernel;
+    fn set_kernel(&mut self, index: usize, kernel: Kernel) -> bool {
+        let slot = self.slot(index);
+        if let Some(slot) = slot {
+            self.kernels[slot] = kernel;
+        }
+        slot.is_some()
     }
 
     fn cost(&self, values: &Values, mu: f64) -> f64 {
@@ -195,10 +232,42 @@ impl<R: Residual> AnyBatch for Batch<R> {
         Ok(())
     }
 
-    fn squared_norms(&self, values: &Values, into: &mut [f64]) {
+    fn squared_norms(&self, values: &Values, into: &mut Vec<(usize, f64)>) {
         let columns = R::Variables::columns(values);
-        for (slot, index) in self.indices.iter().enumerate() {
-            into[*index] = self.norm(slot, columns);
+        into.extend(self.indices.iter().enumerate().map(|(slot, index)| (*index, self.norm(slot, columns))));
+    }
+
+    fn linearize_chosen(&self, values: &Values, chosen: &[bool], dense: &mut DenseQuadratic) {
+        let columns = R::Variables::columns(values);
+        for slot in (0..self.len()).filter(|slot| self.is_chosen(*slot, chosen)) {
+            let at = R::Variables::at(columns, &self.keys[slot]);
+            let (value, jacobians) = (self.residuals[slot].value(at), self.residuals[slot].jacobians(at));
+            let norm = R::Variables::squared_norm(&value, &self.information[slot]);
+            let (cost, weight) = self.kernels[slot].cost_and_weight(norm, 1.0);
+            let rows = DVector::from_column_slice(R::Variables::value_rows(&value));
+            let entries = R::Variables::information_entries(&self.information[slot]);
+            let information = DMatrix::from_column_slice(rows.len(), rows.len(), entries) * weight;
+            let jacobians: Vec<_> = R::Variables::jacobian_entries(&jacobians)
+                .into_iter()
+                .map(|(entries, n_rows, n_columns)| DMatrix::from_column_slice(n_rows, n_columns, entries))
+                .collect();
+            let variables = &self.keys[slot].indices[..R::Variables::ARITY];
+            dense.add(variables, &jacobians, &information, &rows, cost);
         }
+    }
+
+    fn remove_chosen(&mut self, chosen: &[bool]) -> usize {
+        let is_kept: Vec<bool> = (0..self.len()).map(|slot| !self.is_chosen(slot, chosen)).collect();
+        self.keep(&is_kept);
+        is_kept.iter().filter(|kept| !**kept).count()
+    }
+
+    fn remove(&mut self, index: usize) -> bool {
+        let slot = self.slot(index);
+        if let Some(slot) = slot {
+            let is_kept: Vec<bool> = (0..self.len()).map(|other| other != slot).collect();
+            self.keep(&is_kept);
+        }
+        slot.is_some()
     }
 }

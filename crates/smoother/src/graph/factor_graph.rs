@@ -1,5 +1,7 @@
 use super::{
     batch::{AnyBatch, Batch},
+    linear_prior::{LinearPrior, LinearPriors},
+    marginalize::{self, Marginalized},
     structure::Structure,
     values::Values,
 };
@@ -30,7 +32,8 @@ pub struct Graph {
     pub(crate) fixed: Vec<bool>,
     pub(crate) dims: Vec<usize>,
     pub(crate) batches: Vec<Box<dyn AnyBatch>>,
-    n_residuals: usize,
+    /// Number of the next residual.
+    next_residual: usize,
     /// Ordering and symbolic factorization, kept until the graph changes.
     pub(crate) structure: Option<Structure>,
 }
@@ -39,7 +42,6 @@ pub struct Graph {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResidualId {
     batch: usize,
-    slot: usize,
     index: usize,
 }
 
@@ -59,9 +61,15 @@ impl Graph {
     /// Adds a variable with its first value.
     pub fn add_variable<X: Variable>(&mut self, value: X) -> VariableId<X> {
         self.structure = None;
-        self.fixed.push(false);
-        self.dims.push(value.tangent_dim());
-        self.values.push(value)
+        let dim = value.tangent_dim();
+        let id = self.values.push(value);
+        if id.index == self.dims.len() {
+            self.fixed.push(false);
+            self.dims.push(dim);
+        } else {
+            (self.fixed[id.index], self.dims[id.index]) = (false, dim);
+        }
+        id
     }
 
     /// The present value of a variable.
@@ -117,7 +125,7 @@ impl Graph {
         if let Some((_, variable)) = repeated {
             return Err(SmootherError::SelfConnection { variable: *variable });
         }
-        let index = self.n_residuals;
+        let index = self.next_residual;
         information::check(R::Variables::information_entries(&information), index)?;
         let mut single = Batch::<R>::default();
         single.push(residual, keys, information, index);
@@ -128,13 +136,12 @@ impl Graph {
             self.batches.push(Box::new(Batch::<R>::default()));
             self.batches.len() - 1
         });
-        let slot = self.batches[batch].len();
         if let Some(typed) = self.batches[batch].as_any_mut().downcast_mut::<Batch<R>>() {
             typed.append(single);
         }
-        self.n_residuals += 1;
+        self.next_residual += 1;
         self.structure = None;
-        Ok(ResidualId { batch, slot, index })
+        Ok(ResidualId { batch, index })
     }
 
     /// Replaces the information of a residual of type `R`; the structure is kept.
@@ -148,7 +155,7 @@ impl Graph {
     ) -> Result<(), SmootherError> {
         information::check(R::Variables::information_entries(&information), id.index)?;
         let batch = self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
-        batch.ok_or(SmootherError::UnknownId)?.set_information(id.slot, information)
+        batch.ok_or(SmootherError::UnknownId)?.set_information(id.index, information)
     }
 
     /// Gives a residual a robust kernel.
@@ -157,19 +164,77 @@ impl Graph {
     /// [`SmootherError::UnknownId`], [`SmootherError::OutOfRange`] for a parameter that is not positive.
     pub fn set_kernel(&mut self, id: ResidualId, kernel: Kernel) -> Result<(), SmootherError> {
         kernel.validate()?;
-        let batch = self.batches.get_mut(id.batch).filter(|batch| id.slot < batch.len());
-        batch.ok_or(SmootherError::UnknownId)?.set_kernel(id.slot, kernel);
+        let batch = self.batches.get_mut(id.batch).ok_or(SmootherError::UnknownId)?;
+        if batch.set_kernel(id.index, kernel) { Ok(()) } else { Err(SmootherError::UnknownId) }
+    }
+
+    /// Takes a residual back.
+    ///
+    /// # Errors
+    /// [`SmootherError::UnknownId`] when it is not there (any more).
+    pub fn remove(&mut self, id: ResidualId) -> Result<(), SmootherError> {
+        let batch = self.batches.get_mut(id.batch).ok_or(SmootherError::UnknownId)?;
+        if !batch.remove(id.index) {
+            return Err(SmootherError::UnknownId);
+        }
+        self.structure = None;
         Ok(())
+    }
+
+    /// Takes variables back, by their numbers, with the residuals that name them; what earlier marginalizations say of them is marginalized.
+    ///
+    /// # Errors
+    /// As [`marginalize`](Self::marginalize).
+    pub fn remove_variables(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
+        marginalize::remove(self, variables)
+    }
+
+    /// Drops variables, by their numbers ([`VariableId::index`]), and keeps what their residuals say about the others.
+    ///
+    /// The residuals that name them are replaced by a quadratic in the other variables, about the present values: the Schur complement of the
+    /// dropped ones. Where these residuals are linear, nothing is lost; else their linearization, and the weight of their kernels, is final.
+    /// [Sibley et al. 2010, section 3.2; Dong-Si and Mourikis 2011]
+    ///
+    /// ```
+    /// use nalgebra::{Matrix1, Vector1};
+    /// use wayfix_smoother::{Graph, Params};
+    /// # use wayfix_smoother::Residual;
+    /// # struct Step(f64);
+    /// # impl Residual for Step {
+    /// #     type Dim = nalgebra::Const<1>;
+    /// #     type Variables = (Vector1<f64>, Vector1<f64>);
+    /// #     fn value(&self, (a, b): (&Vector1<f64>, &Vector1<f64>)) -> Vector1<f64> { b - a - Vector1::new(self.0) }
+    /// # }
+    /// let mut graph = Graph::new();
+    /// let [a, b, c] = [0.0, 0.9, 2.2].map(|x| graph.add_variable(Vector1::new(x)));
+    /// graph.fix(a)?;
+    /// graph.add(Step(1.0), (a, b), Matrix1::new(4.0))?; // the residual b - a - 1
+    /// graph.add(Step(1.0), (b, c), Matrix1::new(4.0))?;
+    /// let dropped = graph.marginalize(&[a.index(), b.index()])?;
+    /// assert_eq!((dropped.n_residuals, dropped.neighbours), (2, vec![c.index()]));
+    /// graph.optimize(&Params::default())?;
+    /// assert!((graph.value(c)?.x - 2.0).abs() < 1e-9 && graph.value(b).is_err());
+    /// # Ok::<(), wayfix_smoother::SmootherError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// * [`SmootherError::UnknownId`] for a number of no variable.
+    /// * [`SmootherError::IllConditioned`] when the others do not determine them.
+    /// * [`SmootherError::NotFinite`].
+    ///
+    /// The graph stays as it was.
+    pub fn marginalize(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
+        marginalize::marginalize(self, variables)
     }
 
     /// Number of variables, fixed ones included.
     pub fn n_variables(&self) -> usize {
-        self.dims.len()
+        self.values.n_present()
     }
 
     /// Number of residuals.
     pub fn n_residuals(&self) -> usize {
-        self.n_residuals
+        self.batches.iter().map(|batch| batch.len()).sum()
     }
 
     /// $`\sum ρ(r^T Ω r)`$ at the present values.
@@ -178,12 +243,15 @@ impl Graph {
     }
 
     /// $`r^T Ω r`$ of each residual at the present values, without kernels: χ² distributed where the model is right.
+    ///
+    /// In the order of adding; what a marginalization leaves counts as one residual.
     pub fn squared_norms(&self) -> Vec<f64> {
-        let mut norms = vec![0.0; self.n_residuals];
+        let mut norms = Vec::with_capacity(self.n_residuals());
         for batch in &self.batches {
             batch.squared_norms(&self.values, &mut norms);
         }
-        norms
+        norms.sort_unstable_by_key(|(index, _)| *index);
+        norms.into_iter().map(|(_, norm)| norm).collect()
     }
 
     /// Moves all variables that are not fixed to a minimum of the cost.
@@ -204,6 +272,20 @@ impl Graph {
     /// As [`optimize`](Self::optimize).
     pub fn marginals(&mut self) -> Result<Marginals<'_>, SmootherError> {
         marginals::at_present(self)
+    }
+
+    /// Adds what a marginalization leaves.
+    pub(super) fn add_prior(&mut self, prior: LinearPrior) {
+        let found = self.batches.iter_mut().position(|batch| batch.as_any_mut().is::<LinearPriors>());
+        let batch = found.unwrap_or_else(|| {
+            self.batches.push(Box::new(LinearPriors::default()));
+            self.batches.len() - 1
+        });
+        if let Some(priors) = self.batches[batch].as_any_mut().downcast_mut::<LinearPriors>() {
+            priors.push(prior, self.next_residual);
+        }
+        self.next_residual += 1;
+        self.structure = None;
     }
 
     pub(crate) fn cost_at(&self, values: &Values, mu: f64) -> f64 {
