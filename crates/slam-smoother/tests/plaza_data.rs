@@ -19,7 +19,9 @@ const ALIGNED_RMSE: f64 = 0.25;
 
 #[test]
 fn plaza_path_without_any_start_for_the_beacons() {
-    let Some(folder) = std::env::var_os("WAYFIX_DATA").map(|data| Path::new(&data).join("plaza")) else { return };
+    let Some(folder) = std::env::var_os("WAYFIX_DATA").map(|data| Path::new(&data).join("plaza")) else {
+        return;
+    };
     if !folder.is_dir() {
         return;
     }
@@ -27,8 +29,10 @@ fn plaza_path_without_any_start_for_the_beacons() {
     let mut ranges = rows(&folder.join("ranges.csv"));
     ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let truth = rows(&folder.join("truth.csv"));
-    let beacons: BTreeMap<u32, Vector2<f64>> =
-        rows(&folder.join("beacons.csv")).iter().map(|row| (row[0] as u32, Vector2::new(row[1], row[2]))).collect();
+    let beacons: BTreeMap<u32, Vector2<f64>> = rows(&folder.join("beacons.csv"))
+        .iter()
+        .map(|row| (row[0] as u32, Vector2::new(row[1], row[2])))
+        .collect();
 
     // A pose for each row of odometry; a range is taken at the nearest row before it.
     let (begin, end) = (odometry[0][0], odometry.last().unwrap()[0]);
@@ -68,7 +72,9 @@ fn plaza_path_without_any_start_for_the_beacons() {
 /// Error of `(estimate, truth)` after the best rigid motion, m. [Umeyama 1991]
 fn aligned_rmse(pairs: &[(Vector2<f64>, Vector2<f64>)]) -> f64 {
     let n = pairs.len() as f64;
-    let mean = |of: fn(&(Vector2<f64>, Vector2<f64>)) -> Vector2<f64>| pairs.iter().map(of).sum::<Vector2<f64>>() / n;
+    let mean = |of: fn(&(Vector2<f64>, Vector2<f64>)) -> Vector2<f64>| {
+        pairs.iter().map(of).sum::<Vector2<f64>>() / n
+    };
     let (a, b) = (mean(|pair| pair.0), mean(|pair| pair.1));
     let h: Matrix2<f64> = pairs.iter().map(|(x, y)| (x - a) * (y - b).transpose()).sum();
     let (sin, cos) = (h.m12 - h.m21).atan2(h.trace()).sin_cos();

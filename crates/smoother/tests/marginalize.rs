@@ -14,8 +14,12 @@ use nalgebra::{Const, Matrix2, Vector2};
 use wayfix_estimation_traits::Manifold;
 use wayfix_smoother::{Graph, Kernel, Method, Params, Residual, SmootherError, VariableId};
 
-const EXACT: Params =
-    Params { method: Method::LevenbergMarquardt, max_iterations: 100, relative_decrease: 1e-15, graduated: false };
+const EXACT: Params = Params {
+    method: Method::LevenbergMarquardt,
+    max_iterations: 100,
+    relative_decrease: 1e-15,
+    graduated: false,
+};
 
 /// $`b - a - z`$, which is linear.
 struct Offset(Vector2<f64>);
@@ -82,7 +86,8 @@ fn linear_window_equals_batch_after_dropping() {
 fn nonlinear_minimum_stays_where_it_is() {
     let mut world = world(3, 24, true);
     world.graph.optimize(&EXACT).unwrap();
-    let (kept, dropped) = (world.poses[20], [world.poses[2].index(), world.poses[3].index(), world.poses[7].index()]);
+    let (kept, dropped) =
+        (world.poses[20], [world.poses[2].index(), world.poses[3].index(), world.poses[7].index()]);
     let (value, cost) = (*world.graph.value(kept).unwrap(), world.graph.cost());
     let covariance = world.graph.marginals().unwrap().covariance(kept).unwrap();
     let n_before = (world.graph.n_variables(), world.graph.n_residuals());

@@ -64,7 +64,8 @@ impl RangeRecording {
         let (ranges, unknown): (Vec<_>, Vec<_>) =
             ranges.into_iter().partition(|(_, [beacon, _])| identity(*beacon).is_some());
         for (stamp, [beacon, _]) in unknown {
-            let reason = format!("beacon {beacon} at {stamp} is no identity: it must be a whole number from 0");
+            let reason =
+                format!("beacon {beacon} at {stamp} is no identity: it must be a whole number from 0");
             report.add(problem(RANGES, 0, RowProblemKind::NotANumber, reason));
         }
         let row = |(stamp, [beacon, range]): (Stamp, [f64; 2])| {
@@ -151,7 +152,11 @@ fn read_rows<const N: usize>(
             Err(reason) => table.leave_out(*line, reason, report),
         }
     }
-    if rows.is_empty() { Err(refused(format!("no row of use; {}", table.first_problem(report)))) } else { Ok(rows) }
+    if rows.is_empty() {
+        Err(refused(format!("no row of use; {}", table.first_problem(report))))
+    } else {
+        Ok(rows)
+    }
 }
 
 /// Sorts rows by time and says how many came late.

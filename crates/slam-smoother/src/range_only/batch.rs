@@ -94,8 +94,8 @@ impl RangeGraph {
         let params = Params { relative_decrease: LIKELIHOOD_DECREASE, ..Params::default() };
         let cost = self.graph.optimize(&params)?.cost;
         let log_determinant = self.graph.marginals()?.log_determinant();
-        let of_motion = 4.0 * self.noise.translation_per_sqrt_meter.ln()
-            + 2.0 * self.noise.heading_per_sqrt_meter.ln();
+        let of_motion =
+            4.0 * self.noise.translation_per_sqrt_meter.ln() + 2.0 * self.noise.heading_per_sqrt_meter.ln();
         let of_ranges = 2.0 * self.noise.range.ln();
         Ok(cost
             + log_determinant
@@ -106,7 +106,11 @@ impl RangeGraph {
     pub(super) fn solution(&self) -> Result<Solution, SlamSmootherError> {
         let value = |(id, beacon): (&u32, &VariableId<Vector2<f64>>)| Ok((*id, *self.graph.value(*beacon)?));
         Ok(Solution {
-            poses: self.poses.iter().map(|pose| self.graph.value(*pose).copied()).collect::<Result<_, _>>()?,
+            poses: self
+                .poses
+                .iter()
+                .map(|pose| self.graph.value(*pose).copied())
+                .collect::<Result<_, _>>()?,
             beacons: self.beacons.iter().map(value).collect::<Result<_, SlamSmootherError>>()?,
             calibration: *self.graph.value(self.calibration)?,
         })

@@ -24,11 +24,8 @@ pub struct RangeOnlyParams {
 
 impl Default for RangeOnlyParams {
     fn default() -> Self {
-        let start_noise = RangeOnlyNoise {
-            translation_per_sqrt_meter: 0.04,
-            heading_per_sqrt_meter: 0.01,
-            range: 1.0,
-        };
+        let start_noise =
+            RangeOnlyNoise { translation_per_sqrt_meter: 0.04, heading_per_sqrt_meter: 0.01, range: 1.0 };
         Self { start_noise, calibration: CalibrationPrior::default() }
     }
 }
@@ -87,11 +84,8 @@ pub fn estimate(
 ) -> Result<RangeOnlyEstimate, SlamSmootherError> {
     input.check()?;
     let mut noise = params.start_noise;
-    let mut solution = Solution {
-        poses: vec![input.start],
-        beacons: BTreeMap::new(),
-        calibration: Vector2::zeros(),
-    };
+    let mut solution =
+        Solution { poses: vec![input.start], beacons: BTreeMap::new(), calibration: Vector2::zeros() };
     let mut known_calibration = params.calibration.information();
     let mut graph = None;
     for n_poses in prefixes(input.n_poses()) {

@@ -26,7 +26,11 @@ pub(super) struct Sample {
 /// What the ranges to a beacon tell about its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Placement {
-    Placed { beacon: Vector2<f64>, calibration: Vector2<f64>, range_sigma: f64 },
+    Placed {
+        beacon: Vector2<f64>,
+        calibration: Vector2<f64>,
+        range_sigma: f64,
+    },
     /// Fewer than [`MIN_RANGES`].
     TooFewRanges,
     /// These places fit equally well, or a single one is spread too wide.
@@ -126,9 +130,8 @@ fn decide(samples: &[Sample], minima: &[Minimum], sigma: f64) -> Placement {
 /// From the median of the absolute residuals.
 fn robust_sigma(samples: &[Sample], at: &Minimum) -> f64 {
     let calibration = Calibration::from(at.calibration);
-    let residual = |sample: &Sample| {
-        (calibration.range_of((at.beacon - sample.position).norm()) - sample.range).abs()
-    };
+    let residual =
+        |sample: &Sample| (calibration.range_of((at.beacon - sample.position).norm()) - sample.range).abs();
     super::estimate::sigma_of(samples.iter().map(residual).collect())
 }
 

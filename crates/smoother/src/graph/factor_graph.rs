@@ -154,7 +154,8 @@ impl Graph {
         information: Information<R>,
     ) -> Result<(), SmootherError> {
         information::check(R::Variables::information_entries(&information), id.index)?;
-        let batch = self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
+        let batch =
+            self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
         batch.ok_or(SmootherError::UnknownId)?.set_information(id.index, information)
     }
 

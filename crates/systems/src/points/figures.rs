@@ -42,6 +42,12 @@ fn position_metrics(run: &PointRun) -> Vec<Metric> {
     add("ate_aligned_rmse_m", rms_distance(estimated.clone(), &motion));
     add("ate_aligned_median_m", median_distance(estimated, &motion));
     add("dead_reckoning_aligned_rmse_m", rms_distance(reckoned.clone(), &align(reckoned)));
+    let batch = run.batch_positions();
+    if !batch.is_empty() {
+        let batch = batch.iter().copied();
+        add("batch_ate_rmse_m", rms_distance(batch.clone(), &Pose2::identity()));
+        add("batch_ate_aligned_rmse_m", rms_distance(batch.clone(), &align(batch)));
+    }
     metrics.extend(position_nees(run).map(|nees| Metric::new("position_nees_mean", nees, "")));
     metrics
 }

@@ -11,7 +11,7 @@ use wayfix_slam_ekf::{
 
 use super::{
     MountingParams, OdometryRecordKind, PointSlamParams, commands::Commands, drawing,
-    state::PointFrontEndState,
+    follower::PointFollower, state::PointFrontEndState,
 };
 use crate::{
     slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
@@ -66,7 +66,8 @@ impl PointSystem {
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
-        let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
+        let mut estimator = SlamEstimator::new(filter, association, params.record_observability, start);
+        estimator.follower = PointFollower::new(&params, start, start_covariance)?;
         let front_end = PointSlamFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
@@ -239,7 +240,7 @@ impl PointSlamFrontEnd {
             format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_timeout)"),
         );
         let unknown = MotionWithRangeScale(UnknownMotion(self.motion.unknown_motion(seconds)));
-        estimator.filter.predict(&unknown, &()).map_err(|error| error.to_string())
+        estimator.predict_unrecorded(&unknown, &())
     }
 
     /// The detections that can be landmarks; the others are counted.

@@ -3,6 +3,7 @@
 mod commands;
 mod drawing;
 mod figures;
+mod follower;
 mod front_end;
 mod params;
 mod plots;

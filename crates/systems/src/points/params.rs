@@ -8,7 +8,11 @@ use wayfix_slam_ekf::{
     RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
-use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_TIMEOUT};
+use crate::{
+    settings::over_defaults,
+    slam::{AssociationRule, Smoothing},
+    system::VELOCITY_TIMEOUT,
+};
 
 /// Everything that can be set for EKF-SLAM on a log.
 ///
@@ -61,6 +65,9 @@ pub struct PointSlamParams {
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
+    /// Whether a smoother follows the filter; asked for on the command line too.
+    #[serde(skip)]
+    pub smoothing: Smoothing,
 }
 
 /// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
@@ -162,6 +169,7 @@ impl PointSlamParams {
                     ..LandmarkConfirmationParams::default()
                 },
                 record_observability: false,
+                smoothing: Smoothing::Off,
             },
             RobotProfile::RangeBearing => Self {
                 increment_noise: OdometryMotion {

@@ -5,11 +5,11 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePositions, align};
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp};
-use wayfix_slam_ekf::LandmarkId;
+use wayfix_slam_ekf::{LandmarkEstimate, LandmarkId};
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::{
-    slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_start},
+    slam::{AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose, warn_of_start},
     system::{EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap},
 };
 
@@ -41,7 +41,9 @@ pub fn run(
         |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
     let known = TrueStartPose::at(start_stamp, &truth, records).filter(|_| params.start_pose.is_none());
     let start = if params.start_pose.is_none() && known.is_none() {
-        fitted_start(from(Pose2::new(0.0, 0.0, 0.0))?, records, &true_positions)
+        let mut pilot = from(Pose2::new(0.0, 0.0, 0.0))?;
+        pilot.estimator.follower = None;
+        fitted_start(pilot, records, &true_positions)
     } else {
         start_pose(params.start_pose, known)
     };
@@ -86,8 +88,13 @@ fn drive_through(
     let last_truth = truth.last_stamp().or(true_positions.last_stamp());
     let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let true_map = true_landmarks(records);
-    let mut run =
-        SlamRun { system, truth, true_positions, true_map, evaluated_until }.through(records, observe);
+    let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
+        .through(records, observe);
+    let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;
+    if is_smoothed && run.smoothed.is_none() {
+        let why = run.events().warnings().iter().find(|warning| warning.name == "smoother_failed");
+        bail!("{}", why.map_or("the smoother did not run", |warning| &warning.text));
+    }
     if !has_used_a_detection(run.events()) {
         bail!(
             "nothing could be estimated: no detection since the start of odometry was of use{}",
@@ -102,9 +109,23 @@ impl PointRun {
     pub fn positions(&self) -> Vec<(StampedEstimate, Vector2<f64>, Vector2<f64>)> {
         self.positions_of(|estimate| self.system.antenna(&estimate.pose))
     }
+    /// The same of the batch that the filter is compared with.
+    pub(super) fn batch_positions(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
+        let batch = self.smoothed.as_ref().filter(|smoothed| smoothed.is_batch);
+        let estimates = batch.map_or(&[][..], |smoothed| &smoothed.estimates);
+        let evaluated = estimates.iter().filter(|estimate| estimate.stamp <= self.evaluated_until);
+        let pair =
+            |at: &StampedEstimate| Some((self.system.antenna(&at.pose), self.true_positions.near(at.stamp)?));
+        evaluated.filter_map(pair).collect()
+    }
     /// Estimated landmark positions.
     pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
-        self.system.filter().landmarks().map(|landmark| (landmark.id.0, landmark.mean)).collect()
+        let smoothed = self.smoothed.as_ref().filter(|smoothed| !smoothed.is_batch);
+        let place = |landmark: LandmarkEstimate<Vector2<f64>>| {
+            let place = smoothed.and_then(|smoothed| smoothed.landmarks.get(&landmark.id.0));
+            (landmark.id.0, place.copied().unwrap_or(landmark.mean))
+        };
+        self.system.filter().landmarks().map(place).collect()
     }
     /// How estimated landmarks are compared with true ones.
     pub fn correspondence(&self) -> LandmarkCorrespondence {

@@ -78,6 +78,7 @@ impl PointSystem {
         let stamp = Stamp::from_nanoseconds;
         let mut system =
             Self::with_points(params, association, stamp(time), dead_reckoning, &Matrix3::zeros())?;
+        system.estimator.follower = None; // it does not know the map
         for (nanoseconds, linear, angular) in commands {
             let velocity = Velocity { linear, angular };
             let impossible = |_| SlamError::NotFinite { what: "saved command" };

@@ -5,7 +5,9 @@ use nalgebra::{Matrix3, Vector2};
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
-use wayfix_slam_smoother::range_only::{self, Calibration, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams};
+use wayfix_slam_smoother::range_only::{
+    self, Calibration, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
+};
 use wayfix_table_log::RangeRecording;
 
 use super::input::StampedInput;
@@ -97,7 +99,10 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, events: &mut EventCounts) {
             [one] => format!("its ranges hardly hold it at {one}"),
             several => format!("{} fit equally well", several.join(" and ")),
         };
-        let text = format!("beacon {} has no place ({why}): its {} ranges are not used", unplaced.beacon, unplaced.n_ranges);
+        let text = format!(
+            "beacon {} has no place ({why}): its {} ranges are not used",
+            unplaced.beacon, unplaced.n_ranges
+        );
         events.warn("beacon_not_placed", text);
     }
 }

@@ -8,6 +8,7 @@ use wayfix_slam_ekf::{
     ObservationOutcome, RobotDim, SlamAlloc, UpdateReport, observability::ObservabilityRecorder,
 };
 
+use super::SlamFollower;
 use crate::system::EventCounts;
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
@@ -37,6 +38,8 @@ where
     pub(crate) filter: EkfSlam<M>,
     pub(super) association: AnyAssociation,
     pub(super) observability: Option<ObservabilityRecorder>,
+    /// Smoothes what the filter pairs.
+    pub(crate) follower: Option<Box<dyn SlamFollower<M>>>,
     pub(crate) dead_reckoning: Pose2<f64>,
     pub(super) stamped_estimates: Vec<StampedEstimate>,
     pub(crate) events: EventCounts,
@@ -58,6 +61,7 @@ where
             observability: records_observability.then(|| ObservabilityRecorder::new(&filter)),
             filter,
             association,
+            follower: None,
             dead_reckoning: start,
             stamped_estimates: Vec::new(),
             events: EventCounts::default(),
@@ -72,9 +76,23 @@ where
         control: &U,
     ) -> Result<(), String> {
         let jacobian = motion.jacobian(self.filter.robot(), control);
-        self.filter.predict(motion, control).map_err(|error| error.to_string())?;
+        self.predict_unrecorded(motion, control)?;
         if let Some(recorder) = &mut self.observability {
             recorder.record_motion(&dynamic(&jacobian));
+        }
+        Ok(())
+    }
+
+    /// Moves the robot by a motion that is no part of the linearization that observability is judged by.
+    pub(crate) fn predict_unrecorded<U: ?Sized>(
+        &mut self,
+        motion: &impl MotionModel<State = M::Robot, Control = U>,
+        control: &U,
+    ) -> Result<(), String> {
+        let before = self.filter.robot().clone();
+        self.filter.predict(motion, control).map_err(|error| error.to_string())?;
+        if let Some(follower) = &mut self.follower {
+            follower.predicted(&before, self.filter.robot(), &motion.noise(&before, control));
         }
         Ok(())
     }
@@ -89,6 +107,9 @@ where
         let report = report.map_err(|error| error.to_string())?;
         if let Some(recorder) = &mut self.observability {
             recorder.record(&self.filter, &seen_landmarks(&report));
+        }
+        if let Some(follower) = &mut self.follower {
+            follower.updated(&self.filter, observations, &report);
         }
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
             let name = outcome.event_name();
@@ -138,7 +159,7 @@ where
         covariance: Matrix3<f64>,
         nis: (f64, usize),
     ) {
-        self.stamped_estimates.push(StampedEstimate {
+        let mut estimate = StampedEstimate {
             stamp,
             pose,
             covariance,
@@ -146,7 +167,11 @@ where
             n_landmarks: self.filter.n_landmarks(),
             nis,
             step: std::mem::take(&mut self.step),
-        });
+        };
+        if let Some(follower) = &mut self.follower {
+            estimate.step += follower.estimated(&self.filter, &estimate);
+        }
+        self.stamped_estimates.push(estimate);
     }
 }
 

@@ -53,6 +53,9 @@ where
         match self.filter.update_moved(measurement, motion, covariance) {
             Ok(innovation) => {
                 self.record_robot(&innovation.jacobian, &innovation.covariance);
+                if let Some(follower) = &mut self.follower {
+                    follower.measured(&self.filter, measurement, motion);
+                }
                 self.events.count("measurement_accepted");
             }
             Err(outlier @ SlamError::Outlier { .. }) => {

@@ -1,6 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::{PoseWithTruth, relative_errors, trajectory_errors},
+    errors::{PoseWithTruth, TrajectoryErrors, relative_errors, trajectory_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_slam_ekf::{
@@ -24,6 +24,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     let mut metrics = path_metrics(&run.samples(), run.truth.is_estimate());
+    let reference = trajectory_errors(&run.batch_samples());
     metrics.extend(of_map);
     let n_landmarks = run.system.filter().n_landmarks();
     let events = run.events();
@@ -33,7 +34,22 @@ where
     let timings = timings(run.system.stamped_estimates());
     let mut summary = ReportRun { metrics, timings, events: run.events().counts(), ..ReportRun::default() };
     unobservable_directions(run.system.observability(), &mut summary);
+    if let Some(batch) = reference {
+        compare_with_batch(&batch, &mut summary);
+    }
     summary
+}
+
+/// Adds the errors of the optimum of the same measurements and pairings.
+fn compare_with_batch(batch: &TrajectoryErrors, summary: &mut ReportRun) {
+    summary.metrics.push(Metric::new("batch_ate_rmse_m", batch.ate_rmse, "m"));
+    summary.metrics.push(Metric::new("batch_ate_aligned_rmse_m", batch.ate_aligned_rmse, "m"));
+    let online = summary.metrics.iter().find(|metric| metric.name == "ate_aligned_rmse_m");
+    let note = online.map(|online| {
+        let (online, batch) = (online.value, batch.ate_aligned_rmse);
+        format!("Aligned path error: online {online:.3} m, batch {batch:.3} m (least squares on the same measurements and pairings).")
+    });
+    summary.notes.extend(note);
 }
 
 /// Errors of the path and of odometry alone. Names as in the contract of `docs/architecture.md`.

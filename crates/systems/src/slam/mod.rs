@@ -1,13 +1,15 @@
-//! EKF-SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
+//! SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 //!
 //! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
-//! Filter, association, observability, saved maps, figures and pictures are the same for both.
+//! Filter, association, observability, saved maps, figures and pictures are the same for both. A smoother may follow the filter: it takes the
+//! motions and pairings, and gives the estimates or the optimum to compare with.
 
 mod association;
 mod estimates;
 mod estimator;
 mod external;
 mod figures;
+mod follower;
 mod front_end;
 mod increment_numbers;
 mod plots;
@@ -21,6 +23,8 @@ pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 pub(crate) use figures::{path_metrics, summary, timings};
+pub(crate) use follower::{SlamFollower, carried};
+pub use follower::{SmoothedRun, Smoothing};
 pub use front_end::{FrontEnd, FrontEndState, MotionEstimate};
 pub(crate) use increment_numbers::increment_numbers;
 pub(crate) use plots::{path_plots, plots_with};

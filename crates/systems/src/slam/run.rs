@@ -3,7 +3,7 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{FrontEnd, SlamSystem, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
+use super::{FrontEnd, SlamSystem, SmoothedRun, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
 use crate::system::{EventCounts, RunStep, System, drive};
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
@@ -21,6 +21,8 @@ where
     pub true_map: T,
     /// Estimates up to this stamp are compared with the truth.
     pub evaluated_until: Stamp,
+    /// What a smoother made of the run, where one followed.
+    pub smoothed: Option<SmoothedRun>,
 }
 
 impl<F: FrontEnd, T> SlamRun<F, T>
@@ -34,6 +36,7 @@ where
         observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
     ) -> Self {
         drive(&mut self.system, records, observe);
+        self.take_smoothed();
         let estimates = self.system.stamped_estimates();
         let estimated =
             estimates.first().zip(estimates.last()).map(|(first, last)| (first.stamp, last.stamp));
@@ -41,6 +44,30 @@ where
         let n_landmarks = self.system.filter().n_landmarks();
         warn_of_an_empty_map(self.system.events(), n_landmarks);
         self
+    }
+
+    /// Takes the result of the smoother; with a fixed lag it replaces the estimates of the filter.
+    fn take_smoothed(&mut self) {
+        let Some(mut follower) = self.system.estimator.follower.take() else { return };
+        match follower.finish() {
+            Ok(mut smoothed) => {
+                if !smoothed.is_batch {
+                    self.system.estimator.stamped_estimates = std::mem::take(&mut smoothed.estimates);
+                }
+                self.smoothed = Some(smoothed);
+            }
+            Err(reason) => {
+                self.system.events().warn("smoother_failed", format!("no smoothed estimates: {reason}"))
+            }
+        }
+    }
+
+    /// The batch over the same measurements, with true poses; without covariances.
+    pub(crate) fn batch_samples(&self) -> Vec<PoseWithTruth> {
+        let batch = self.smoothed.as_ref().filter(|smoothed| smoothed.is_batch);
+        let estimates = batch.map_or(&[][..], |smoothed| &smoothed.estimates);
+        let evaluated = estimates.iter().filter(|estimate| estimate.stamp <= self.evaluated_until);
+        evaluated.filter_map(|at| self.truth.sample(at.stamp, at.pose, &at.covariance)).collect()
     }
 
     /// Estimates with their true poses.

@@ -91,8 +91,8 @@ fn drive_through(
     let records = without_odometry_delay(records, delay);
     let true_positions = TruePositions::from_records(&records);
     let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
-    let mut run =
-        SlamRun { system, truth, true_positions, true_map, evaluated_until }.through(&records, observe);
+    let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
+        .through(&records, observe);
     let stamped_estimates = run.system.stamped_estimates();
     if stamped_estimates.is_empty() {
         let n_before = run.events().get("record_before_resume");

@@ -75,13 +75,18 @@ pub(in crate::cli) fn main(arguments: &run_slam::Arguments, folder: &Path) -> Re
 /// Refuses options that have no effect here.
 fn check(arguments: &run_slam::Arguments) -> Result<()> {
     if arguments.estimator == EstimatorName::Ekf {
-        bail!("ranges without bearings need --estimator smoother: a single range does not start a landmark of the EKF");
+        bail!(
+            "ranges without bearings need --estimator smoother: a single range does not start a landmark of the EKF"
+        );
     }
     ensure!(
         arguments.common.params.is_none() && !arguments.common.print_params,
         "runs on ranges have no parameters: noise, bias and scale come from the log"
     );
     ensure!(arguments.relations.is_none(), "--relations is for logs of scans");
-    ensure!(arguments.profile.is_none(), "--profile is for logs of range-bearing detections; noise comes from the log here");
+    ensure!(
+        arguments.profile.is_none(),
+        "--profile is for logs of range-bearing detections; noise comes from the log here"
+    );
     Ok(())
 }

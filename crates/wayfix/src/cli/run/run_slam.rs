@@ -14,7 +14,7 @@ use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
         AssociationRule, FrontEnd, FrontEndState, PeriodicStateSaver, SlamEstimateRecorder, SlamRun,
-        SlamState, SlamSystem, StateOf,
+        SlamState, SlamSystem, Smoothing, StateOf,
     },
     system::{RunStep, Stopwatch},
 };
@@ -106,7 +106,7 @@ pub(in crate::cli) struct Arguments {
 pub(in crate::cli) enum EstimatorName {
     /// Extended Kalman filter.
     Ekf,
-    /// Sparse least squares: ranges without bearings in one batch over the log.
+    /// Sparse least squares: a window of 60 s for points, with the pairings of the filter; one batch for ranges without bearings.
     Smoother,
 }
 
@@ -254,6 +254,10 @@ fn params(arguments: &Arguments, usual: RobotProfile) -> Result<PointSlamParams>
     };
     params.association = arguments.association.or(params.association);
     params.record_observability = arguments.observability;
+    params.smoothing = match arguments.estimator {
+        EstimatorName::Ekf => Smoothing::Reference,
+        EstimatorName::Smoother => Smoothing::FixedLag,
+    };
     Ok(params)
 }
 

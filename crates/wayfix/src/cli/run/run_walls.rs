@@ -9,7 +9,10 @@ use wayfix_systems::{
     walls::{self, SavedWallMap, WallSlamParams},
 };
 
-use super::{super::input::read_toml, run_slam};
+use super::{
+    super::input::read_toml,
+    run_slam::{self, EstimatorName},
+};
 use crate::commented::commented;
 
 /// Whether a log is one of scans: walls are its landmarks then.
@@ -28,6 +31,10 @@ pub(in crate::cli) fn main(
     ensure!(
         arguments.profile.is_none(),
         "--profile is for logs of range-bearing detections; this one has laser scans"
+    );
+    ensure!(
+        arguments.estimator == EstimatorName::Ekf,
+        "walls need --estimator ekf: the smoother takes points and ranges"
     );
     let params = params(arguments)?;
     if arguments.common.print_params {

@@ -1,0 +1,223 @@
+use std::{collections::BTreeMap, time::Duration};
+
+use nalgebra::{Matrix3, Matrix4};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_slam_ekf::{
+    EkfSlam, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
+    RangeBearing, SlamError, UpdateReport,
+};
+use wayfix_slam_smoother::{
+    SlamSmootherError,
+    points::{Detection, PointSmoother, PointSmootherParams, PoseObservation, SettledPose, StartPose},
+};
+
+use super::{MountingParams, PointSensor, PointSlamParams};
+use crate::{
+    slam::{SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried},
+    system::Stopwatch,
+};
+
+/// Poses older than this are final, s.
+const LAG: f64 = 60.0;
+/// Runs with more poses have no batch to compare with.
+const MAX_BATCH_POSES: usize = 20_000;
+
+/// The smoother of points behind EKF-SLAM: motions and pairings come from the filter.
+pub(super) struct PointFollower {
+    smoother: PointSmoother,
+    is_batch: bool,
+    /// Motion since the newest pose of the smoother, with covariance.
+    motion: Pose2<f64>,
+    covariance: Matrix3<f64>,
+    /// Stamp of the newest estimate, s.
+    seconds: f64,
+    has_anchors: bool,
+    waiting: BTreeMap<usize, Vec<Waiting>>,
+    estimates: Vec<StampedEstimate>,
+    failure: Option<String>,
+}
+
+/// An estimate of the filter that waits for the pose of the smoother before it.
+struct Waiting {
+    place: usize,
+    motion: Pose2<f64>,
+    covariance: Matrix3<f64>,
+}
+
+impl PointFollower {
+    /// The follower that the parameters ask for.
+    pub(super) fn new(
+        params: &PointSlamParams,
+        start: Pose2<f64>,
+        start_covariance: &Matrix3<f64>,
+    ) -> Result<Option<Box<dyn SlamFollower<PointSensor>>>, SlamError> {
+        let is_batch = match params.smoothing {
+            Smoothing::Off => return Ok(None),
+            Smoothing::Reference => true,
+            Smoothing::FixedLag => false,
+        };
+        let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
+        let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
+        let start = StartPose {
+            pose: start,
+            covariance: *start_covariance,
+            log_range_scale_sigma: params.robot.range_scale_sigma,
+        };
+        let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), mount };
+        let smoother = PointSmoother::new(smoother_params, &start);
+        let smoother = smoother.map_err(|_| SlamError::NotFinite { what: "start covariance" })?;
+        Ok(Some(Box::new(Self {
+            smoother,
+            is_batch,
+            motion: Pose2::identity(),
+            covariance: Matrix3::zeros(),
+            seconds: f64::NEG_INFINITY,
+            has_anchors: false,
+            waiting: BTreeMap::new(),
+            estimates: Vec::new(),
+            failure: None,
+        })))
+    }
+
+    /// Does something unless an earlier step has failed.
+    fn try_to(&mut self, act: impl FnOnce(&mut Self) -> Result<(), SlamSmootherError>) {
+        if self.failure.is_none()
+            && let Err(error) = act(self)
+        {
+            self.failure = Some(error.to_string());
+        }
+    }
+
+    /// Adds a pose to the smoother where the filter is.
+    fn advance(&mut self, filter: &EkfSlam<PointSensor>) -> Result<(), SlamSmootherError> {
+        if self.is_batch && self.smoother.newest() >= MAX_BATCH_POSES {
+            self.failure = Some(format!("the log has more than {MAX_BATCH_POSES} scans"));
+            return Ok(());
+        }
+        let guess = self.is_batch.then(|| filter.robot().pose);
+        self.smoother.advance(self.seconds, self.motion, &self.covariance, guess)?;
+        (self.motion, self.covariance) = (Pose2::identity(), Matrix3::zeros());
+        Ok(())
+    }
+
+    fn take_scan(
+        &mut self,
+        filter: &EkfSlam<PointSensor>,
+        observations: &[Observation<RangeBearing>],
+        report: &UpdateReport<RangeBearing>,
+    ) -> Result<(), SlamSmootherError> {
+        if !std::mem::replace(&mut self.has_anchors, true) {
+            for (id, place) in filter.anchors() {
+                self.smoother.add_anchor(id.0, *place)?;
+            }
+        }
+        self.advance(filter)?;
+        for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
+            let landmark = match outcome {
+                ObservationOutcome::Accepted { landmark, .. } => *landmark,
+                ObservationOutcome::Initialized { landmark } | ObservationOutcome::Restarted { landmark } => {
+                    self.smoother.remove(landmark.0)?;
+                    *landmark
+                }
+                _ => continue,
+            };
+            let RangeBearing { range, bearing } = *measurement;
+            let covariance = filter.model().noise(measurement);
+            self.smoother.detect(landmark.0, &Detection { range, bearing: bearing.radians(), covariance })?;
+        }
+        for merge in &report.merges {
+            self.smoother.merge(merge.kept.0, merge.removed.0)?;
+        }
+        let gone: Vec<u32> = self.smoother.landmarks().into_keys().collect();
+        for landmark in gone.into_iter().filter(|id| !filter.contains(wayfix_slam_ekf::LandmarkId(*id))) {
+            self.smoother.remove(landmark)?;
+        }
+        Ok(())
+    }
+
+    /// Puts settled poses into the estimates that wait for them.
+    fn settle(&mut self, settled: &[SettledPose]) {
+        for SettledPose { number, pose, covariance } in settled {
+            for waiting in self.waiting.remove(number).unwrap_or_default() {
+                let estimate = &mut self.estimates[waiting.place];
+                estimate.pose = pose.compose(&waiting.motion);
+                estimate.covariance = carried(covariance, &waiting.motion) + waiting.covariance;
+            }
+        }
+    }
+}
+
+impl SlamFollower<PointSensor> for PointFollower {
+    fn predicted(&mut self, before: &PoseWithRangeScale, after: &PoseWithRangeScale, noise: &Matrix4<f64>) {
+        let step = before.pose.inverse().compose(&after.pose);
+        self.covariance = carried(&self.covariance, &step) + noise.fixed_view::<3, 3>(0, 0);
+        self.motion = self.motion.compose(&step);
+    }
+
+    fn updated(
+        &mut self,
+        filter: &EkfSlam<PointSensor>,
+        observations: &[Observation<RangeBearing>],
+        report: &UpdateReport<RangeBearing>,
+    ) {
+        self.try_to(|follower| follower.take_scan(filter, observations, report));
+    }
+
+    fn measured(&mut self, filter: &EkfSlam<PointSensor>, measurement: &MapMeasurement, motion: Pose2<f64>) {
+        let observation = match *measurement {
+            MapMeasurement::Position(sensor, measured) => {
+                PoseObservation::Position { antenna: sensor.antenna, measured, covariance: sensor.covariance }
+            }
+            MapMeasurement::Heading(sensor, measured) => PoseObservation::Heading {
+                measured: measured.radians(),
+                variance: nalgebra::Matrix1::new(sensor.variance),
+            },
+            MapMeasurement::Pose(sensor, measured) => {
+                PoseObservation::Pose { measured, covariance: sensor.covariance }
+            }
+        };
+        self.try_to(|follower| {
+            follower.advance(filter)?;
+            follower.smoother.observe(&observation, &motion)
+        });
+    }
+
+    fn estimated(&mut self, filter: &EkfSlam<PointSensor>, estimate: &StampedEstimate) -> Duration {
+        let stopwatch = Stopwatch::start();
+        let motion = filter.robot().pose.inverse().compose(&estimate.pose);
+        let of_filter = filter.robot_covariance().fixed_view::<3, 3>(0, 0).into_owned();
+        let covariance = estimate.covariance - carried(&of_filter, &motion);
+        let place = self.estimates.len();
+        self.estimates.push(*estimate);
+        let waiting = Waiting { place, motion, covariance };
+        self.waiting.entry(self.smoother.newest()).or_default().push(waiting);
+        self.seconds = estimate.stamp.seconds();
+        self.try_to(|follower| {
+            let settled = follower.smoother.step()?;
+            follower.settle(&settled);
+            Ok(())
+        });
+        if self.is_batch {
+            return Duration::ZERO; // a batch is no part of a step
+        }
+        let step = stopwatch.elapsed();
+        self.estimates[place].step += step;
+        step
+    }
+
+    fn finish(&mut self) -> Result<SmoothedRun, String> {
+        self.try_to(|follower| {
+            let settled = follower.smoother.finish()?;
+            follower.settle(&settled);
+            Ok(())
+        });
+        match &self.failure {
+            Some(failure) => Err(failure.clone()),
+            None => Ok(SmoothedRun {
+                estimates: std::mem::take(&mut self.estimates),
+                landmarks: self.smoother.landmarks(),
+                is_batch: self.is_batch,
+            }),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+use std::{collections::BTreeMap, time::Duration};
+
+use nalgebra::{DefaultAllocator, Matrix3, Vector2};
+use wayfix_estimation_traits::{Pose2, TangentMatrix};
+use wayfix_slam_ekf::{
+    EkfSlam, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim, Observation, RobotDim, SlamAlloc,
+    UpdateReport,
+};
+
+use super::StampedEstimate;
+
+/// A second estimator that takes the motions and pairings of EKF-SLAM.
+pub(crate) trait SlamFollower<M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// The filter has moved the robot, with noise in the tangent space at the end.
+    fn predicted(&mut self, before: &M::Robot, after: &M::Robot, noise: &TangentMatrix<M::Robot>);
+    /// The filter has taken a scan.
+    fn updated(
+        &mut self,
+        filter: &EkfSlam<M>,
+        observations: &[Observation<M::Measurement>],
+        report: &UpdateReport<M::Measurement>,
+    );
+    /// The filter has taken a measurement of the pose that the robot has after a further motion.
+    fn measured(&mut self, filter: &EkfSlam<M>, measurement: &MapMeasurement, motion: Pose2<f64>);
+    /// The filter has an estimate at a stamp; computing time of the follower for it.
+    fn estimated(&mut self, filter: &EkfSlam<M>, estimate: &StampedEstimate) -> Duration;
+    /// Everything, when the log has ended.
+    ///
+    /// # Errors
+    /// Returns why nothing could be estimated.
+    fn finish(&mut self) -> Result<SmoothedRun, String>;
+}
+
+/// What a smoother makes of a run.
+#[derive(Clone, Debug, Default)]
+pub struct SmoothedRun {
+    /// One for each estimate of the filter, at the same stamps.
+    pub estimates: Vec<StampedEstimate>,
+    /// Landmarks by identity.
+    pub landmarks: BTreeMap<u32, Vector2<f64>>,
+    /// Whether it is a batch over the whole log that the filter is compared with, without covariances.
+    pub is_batch: bool,
+}
+
+/// Whether a smoother follows the filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Smoothing {
+    /// There is none.
+    #[default]
+    Off,
+    /// A batch at the end, which tells how far the filter is from the optimum.
+    Reference,
+    /// With a fixed lag: its estimates are the result.
+    FixedLag,
+}
+
+/// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance carried along a motion.
+pub(crate) fn carried(covariance: &Matrix3<f64>, motion: &Pose2<f64>) -> Matrix3<f64> {
+    use wayfix_estimation_traits::LieGroup;
+    let carry = motion.inverse().adjoint();
+    carry * covariance * carry.transpose()
+}
