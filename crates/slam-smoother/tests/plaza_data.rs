@@ -34,14 +34,21 @@ fn plaza_path_without_any_start_for_the_beacons() {
         .map(|row| (row[0] as u32, Vector2::new(row[1], row[2])))
         .collect();
 
-    // A pose for each row of odometry; a range is taken at the nearest row before it.
+    // A pose for each row of odometry before which there are ranges; they count as taken at it.
     let (begin, end) = (odometry[0][0], odometry.last().unwrap()[0]);
-    let motions: Vec<_> =
-        odometry[1..].iter().map(|row| Pose2::exp(&Vector3::new(row[1], 0.0, row[2]))).collect();
-    let pose_at = |t: f64| odometry.partition_point(|row| row[0] <= t) - 1;
-    let used = ranges.iter().filter(|row| row[0] >= begin && row[0] <= end);
+    ranges.retain(|row| row[0] >= begin && row[0] <= end);
+    let row_of = |t: f64| odometry.partition_point(|row| row[0] < t);
+    let mut rows_of_poses: Vec<usize> =
+        std::iter::once(0).chain(ranges.iter().map(|row| row_of(row[0]))).collect();
+    rows_of_poses.dedup();
+    let arc = |row: &Vec<f64>| Pose2::exp(&Vector3::new(row[1], 0.0, row[2]));
+    let motion = |pair: &[usize]| {
+        odometry[pair[0] + 1..=pair[1]].iter().fold(Pose2::identity(), |sum, row| sum.compose(&arc(row)))
+    };
+    let motions = rows_of_poses.windows(2).map(motion).collect();
+    let pose_of = |row: &Vec<f64>| rows_of_poses.binary_search(&row_of(row[0])).unwrap();
     let ranges =
-        used.map(|row| Range { pose: pose_at(row[0]), beacon: row[1] as u32, range: row[2] }).collect();
+        ranges.iter().map(|row| Range { pose: pose_of(row), beacon: row[1] as u32, range: row[2] }).collect();
     let input = RangeOnlyInput { start: Pose2::identity(), motions, ranges };
     let clock = std::time::Instant::now();
     let found = estimate(&input, &RangeOnlyParams::default()).unwrap();
@@ -53,8 +60,12 @@ fn plaza_path_without_any_start_for_the_beacons() {
         let share = (t - early[0]) / (late[0] - early[0]);
         Vector2::new(early[1] + share * (late[1] - early[1]), early[2] + share * (late[2] - early[2]))
     };
-    let path: Vec<_> =
-        found.poses.iter().zip(&odometry).map(|(pose, row)| (pose.translation, true_at(row[0]))).collect();
+    let path: Vec<_> = found
+        .poses
+        .iter()
+        .zip(&rows_of_poses)
+        .map(|(pose, row)| (pose.translation, true_at(odometry[*row][0])))
+        .collect();
     let places: Vec<_> = found.beacons.iter().map(|(id, (place, _))| (*place, beacons[id])).collect();
     println!(
         "path {:.4} m, beacons {:.4} m, {seconds:.2} s, {:?} {:?} {} outliers of {}",

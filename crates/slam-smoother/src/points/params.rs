@@ -6,6 +6,8 @@ use wayfix_estimation_traits::Pose2;
 pub struct PointSmootherParams {
     /// Poses older than this, in s, are dropped from the least squares problem; `None` keeps all, and [`finish`](super::PointSmoother::finish) solves once.
     pub lag: Option<f64>,
+    /// The window is solved once in this time, s; short against the lag.
+    pub period: f64,
     /// Pose of the sensor in the robot frame.
     pub mount: Pose2<f64>,
 }

@@ -33,13 +33,15 @@ pub struct PointSmoother {
     /// Poses in the window, oldest first.
     window: VecDeque<Frame>,
     n_poses: usize,
+    solved_at: Option<f64>,
     landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
 }
 
 #[derive(Clone, Copy)]
 struct Frame {
     number: usize,
-    seconds: f64,
+    /// Time of the first step after it, s.
+    seconds: Option<f64>,
     pose: VariableId<Pose2<f64>>,
 }
 
@@ -77,8 +79,9 @@ impl PointSmoother {
         } else {
             graph.fix(scale)?;
         }
-        let first = Frame { number: 0, seconds: f64::NEG_INFINITY, pose };
+        let first = Frame { number: 0, seconds: None, pose };
         Ok(Self {
+            solved_at: None,
             params,
             graph,
             scale,
@@ -101,13 +104,12 @@ impl PointSmoother {
         Ok(*self.graph.value(self.last().pose)?)
     }
 
-    /// Adds the pose after a motion, at a time in s. It starts at `guess`, else where the motion leads.
+    /// Adds the pose after a motion. It starts at `guess`, else where the motion leads.
     ///
     /// # Errors
     /// [`SlamSmootherError::Smoother`] for numbers that are not finite.
     pub fn advance(
         &mut self,
-        seconds: f64,
         motion: Pose2<f64>,
         covariance: &Matrix3<f64>,
         guess: Option<Pose2<f64>>,
@@ -124,7 +126,7 @@ impl PointSmoother {
         }
         let number = self.n_poses;
         self.n_poses += 1;
-        self.window.push_back(Frame { number, seconds, pose });
+        self.window.push_back(Frame { number, seconds: None, pose });
         Ok(number)
     }
 
@@ -235,18 +237,23 @@ impl PointSmoother {
         Ok(())
     }
 
-    /// Moves the window to its minimum, and its end to the newest pose; the poses that left it. Does nothing without a lag.
+    /// Moves the window to its minimum and to a time, in s; the poses that left it. Does nothing without a lag, and before the period has passed.
     ///
     /// # Errors
     /// [`SlamSmootherError::Smoother`] when the window cannot be solved.
-    pub fn step(&mut self) -> Result<Vec<SettledPose>, SlamSmootherError> {
+    pub fn step(&mut self, seconds: f64) -> Result<Vec<SettledPose>, SlamSmootherError> {
+        for frame in &mut self.window {
+            frame.seconds.get_or_insert(seconds);
+        }
         let Some(lag) = self.params.lag else { return Ok(Vec::new()) };
-        if self.graph.n_residuals() == 0 {
+        let is_due = self.solved_at.is_none_or(|at| seconds >= at + self.params.period);
+        if !is_due || self.graph.n_residuals() == 0 {
             return Ok(Vec::new());
         }
+        self.solved_at = Some(seconds);
         self.graph.optimize(&ONLINE)?;
-        let end = self.last().seconds - lag;
-        let n_old = self.window.iter().take_while(|frame| frame.seconds < end).count();
+        let is_old = |frame: &&Frame| frame.seconds.is_some_and(|at| at < seconds - lag);
+        let n_old = self.window.iter().take_while(is_old).count();
         let settled = self.settle(n_old.min(self.window.len() - 1), true)?;
         let dropped: Vec<usize> =
             self.window.drain(..settled.len()).map(|frame| frame.pose.index()).collect();

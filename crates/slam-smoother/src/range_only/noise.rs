@@ -48,8 +48,8 @@ const N_COORDINATES: usize = 3;
 const FIRST_FACTOR: f64 = 4.0;
 /// The search ends below this factor: closer than that, the likelihood of some thousand measurements hardly changes.
 const LAST_FACTOR: f64 = 1.1;
-/// A change of $`-2 \ln p`$ by less is within one standard deviation of the parameter: no reason to go on, towards zero for instance.
-const SIGNIFICANT: f64 = 1.0;
+/// Smaller changes of $`-2 \ln p`$ are no reason to go on, towards zero for instance: one standard deviation of a parameter changes it by 1.
+const LEAST_CHANGE: f64 = 0.1;
 /// Likelihoods that are computed at most.
 const MAX_EVALUATIONS: usize = 120;
 
@@ -67,7 +67,7 @@ pub(super) fn maximize_likelihood(graph: &mut RangeGraph) -> Result<(), SlamSmoo
                 graph.set_noise(before.scaled(coordinate, candidate))?;
                 let value = graph.negative_log_likelihood().unwrap_or(f64::INFINITY);
                 n_evaluations += 1;
-                if value < best - SIGNIFICANT {
+                if value < best - LEAST_CHANGE {
                     (best, is_better) = (value, true);
                     break;
                 }

@@ -19,6 +19,8 @@ use crate::{
 
 /// Poses older than this are final, s.
 const LAG: f64 = 60.0;
+/// Time between two solutions of the window, s.
+const PERIOD: f64 = 1.0;
 /// Runs with more poses have no batch to compare with.
 const MAX_BATCH_POSES: usize = 20_000;
 
@@ -29,8 +31,6 @@ pub(super) struct PointFollower {
     /// Motion since the newest pose of the smoother, with covariance.
     motion: Pose2<f64>,
     covariance: Matrix3<f64>,
-    /// Stamp of the newest estimate, s.
-    seconds: f64,
     has_anchors: bool,
     waiting: BTreeMap<usize, Vec<Waiting>>,
     estimates: Vec<StampedEstimate>,
@@ -63,7 +63,7 @@ impl PointFollower {
             covariance: *start_covariance,
             log_range_scale_sigma: params.robot.range_scale_sigma,
         };
-        let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), mount };
+        let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), period: PERIOD, mount };
         let smoother = PointSmoother::new(smoother_params, &start);
         let smoother = smoother.map_err(|_| SlamError::NotFinite { what: "start covariance" })?;
         Ok(Some(Box::new(Self {
@@ -71,7 +71,6 @@ impl PointFollower {
             is_batch,
             motion: Pose2::identity(),
             covariance: Matrix3::zeros(),
-            seconds: f64::NEG_INFINITY,
             has_anchors: false,
             waiting: BTreeMap::new(),
             estimates: Vec::new(),
@@ -95,7 +94,7 @@ impl PointFollower {
             return Ok(());
         }
         let guess = self.is_batch.then(|| filter.robot().pose);
-        self.smoother.advance(self.seconds, self.motion, &self.covariance, guess)?;
+        self.smoother.advance(self.motion, &self.covariance, guess)?;
         (self.motion, self.covariance) = (Pose2::identity(), Matrix3::zeros());
         Ok(())
     }
@@ -191,9 +190,8 @@ impl SlamFollower<PointSensor> for PointFollower {
         self.estimates.push(*estimate);
         let waiting = Waiting { place, motion, covariance };
         self.waiting.entry(self.smoother.newest()).or_default().push(waiting);
-        self.seconds = estimate.stamp.seconds();
         self.try_to(|follower| {
-            let settled = follower.smoother.step()?;
+            let settled = follower.smoother.step(estimate.stamp.seconds())?;
             follower.settle(&settled);
             Ok(())
         });

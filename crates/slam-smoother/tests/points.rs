@@ -1,0 +1,231 @@
+//! The smoother of points: laws, a window against the batch, decisions that are taken back, hostile input.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
+use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
+use wayfix_slam_smoother::points::{
+    AntennaPosition, Detection, Heading, MountedRangeBearing, PointSmoother, PointSmootherParams,
+    PoseObservation, SettledPose, StartPose,
+};
+use wayfix_smoother::laws;
+
+const MOUNT: [f64; 3] = [0.4, -0.1, 0.7];
+
+fn params(lag: Option<f64>) -> PointSmootherParams {
+    let [x, y, heading] = MOUNT;
+    PointSmootherParams { lag, period: 1.0, mount: Pose2::new(x, y, heading) }
+}
+
+fn start() -> StartPose {
+    StartPose { pose: Pose2::identity(), covariance: Matrix3::zeros(), log_range_scale_sigma: 0.03 }
+}
+
+struct Step {
+    motion: Pose2<f64>,
+    seen: Vec<(u32, Detection)>,
+}
+
+/// A second a step, round a circle, among landmarks.
+fn steps(n: usize) -> (Vec<Step>, Vec<Pose2<f64>>) {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut noise = |sigma: f64| Normal::new(0.0, sigma).unwrap().sample(&mut rng);
+    let landmarks: Vec<_> =
+        (0..8).map(|k| Vector2::new(2.0 + 4.0 * (k as f64).cos(), 3.0 + 5.0 * (k as f64).sin())).collect();
+    let (mut truth, mut steps) = (vec![Pose2::identity()], Vec::new());
+    let step = Pose2::new(0.5, 0.0, 0.15);
+    for k in 0..n {
+        let robot = truth[k].compose(&step);
+        truth.push(robot);
+        let motion = step.compose(&Pose2::exp(&Vector3::new(noise(0.02), noise(0.02), noise(0.01))));
+        let [x, y, heading] = MOUNT;
+        let sensor = robot.compose(&Pose2::new(x, y, heading));
+        let seen = landmarks.iter().enumerate().filter(|(id, _)| (id + k) % 3 == 0);
+        let seen = seen.map(|(id, landmark)| {
+            let seen = sensor.inverse_transform(landmark);
+            let covariance = Matrix2::new(0.0025, 0.0, 0.0, 0.0004);
+            let (range, bearing) = (1.02 * seen.norm() + noise(0.05), seen.y.atan2(seen.x) + noise(0.02));
+            (id as u32, Detection { range, bearing, covariance })
+        });
+        steps.push(Step { motion, seen: seen.collect() });
+    }
+    (steps, truth)
+}
+
+fn noise() -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(0.0004, 0.0004, 0.0001))
+}
+
+fn run(lag: Option<f64>, steps: &[Step]) -> (PointSmoother, Vec<SettledPose>) {
+    let mut smoother = PointSmoother::new(params(lag), &start()).unwrap();
+    let mut settled = Vec::new();
+    for (k, step) in steps.iter().enumerate() {
+        smoother.advance(step.motion, &noise(), None).unwrap();
+        for (landmark, detection) in &step.seen {
+            smoother.detect(*landmark, detection).unwrap();
+        }
+        settled.extend(smoother.step(k as f64).unwrap());
+    }
+    settled.extend(smoother.finish().unwrap());
+    (smoother, settled)
+}
+
+#[test]
+fn residuals_of_points_keep_the_laws() {
+    let [x, y, heading] = MOUNT;
+    for turn in [0.0, 1e-8, 3.1, -3.1, -0.4] {
+        let robot = Pose2::new(1.0, -2.0, turn);
+        let seen = MountedRangeBearing { mount: Pose2::new(x, y, heading), range: 3.0, bearing: 0.2 };
+        for point in [[4.0, 1.0], [-3.0, -2.0], [100.0, 3.0]] {
+            laws::residual(&seen, (&robot, &Vector2::from(point), &Vector1::new(0.05))).unwrap();
+        }
+        let antenna = AntennaPosition { antenna: Vector2::new(1.0, 0.5), measured: Vector2::new(0.0, 2.0) };
+        laws::residual(&antenna, (&robot,)).unwrap();
+        laws::residual(&Heading { measured: 3.0 }, (&robot,)).unwrap();
+    }
+}
+
+#[test]
+fn window_that_drops_nothing_equals_the_batch() {
+    let (steps, _) = steps(40);
+    let (batch, of_batch) = run(None, &steps);
+    let (window, of_window) = run(Some(1e6), &steps);
+    assert!((batch.cost() / window.cost() - 1.0).abs() < 1e-9, "{} {}", batch.cost(), window.cost());
+    assert_eq!(of_batch.len(), 41);
+    for (a, b) in of_batch.iter().zip(&of_window) {
+        // Both stop where a step gains less than 1e-8 of the cost.
+        assert!(a.number == b.number && a.pose.local(&b.pose).norm() < 1e-4);
+    }
+}
+
+#[test]
+fn short_window_stays_bounded_and_near_the_truth() {
+    let (steps, truth) = steps(150);
+    let (smoother, settled) = run(Some(10.0), &steps);
+    assert!(smoother.size().0 <= 12, "{:?}", smoother.size());
+    assert_eq!(settled.iter().map(|pose| pose.number).collect::<Vec<_>>(), (0..=150).collect::<Vec<_>>());
+    let mut nees = 0.0;
+    for SettledPose { number, pose, covariance } in settled.iter().skip(1) {
+        let error = pose.local(&truth[*number]);
+        nees += error.dot(&covariance.cholesky().unwrap().solve(&error)) / 150.0;
+    }
+    // The errors of one run hang together: a mean of 3 with the spread of a few independent poses.
+    assert!(nees < 9.0, "{nees}");
+}
+
+#[test]
+fn landmark_that_is_taken_back_leaves_no_trace() {
+    let (steps, _) = steps(30);
+    let (_, expected) = run(Some(100.0), &steps);
+    let mut smoother = PointSmoother::new(params(Some(100.0)), &start()).unwrap();
+    for (k, step) in steps.iter().enumerate() {
+        smoother.advance(step.motion, &noise(), None).unwrap();
+        for (landmark, detection) in &step.seen {
+            smoother.detect(*landmark, detection).unwrap();
+        }
+        if (5..15).contains(&k) {
+            let wrong =
+                Detection { range: 2.0 + k as f64, bearing: 0.1, covariance: Matrix2::identity() * 1e-3 };
+            smoother.detect(99, &wrong).unwrap();
+        }
+        if k == 15 {
+            assert!(smoother.contains(99));
+            smoother.remove(99).unwrap();
+        }
+        smoother.step(k as f64).unwrap();
+    }
+    let found = smoother.finish().unwrap();
+    assert!(!smoother.contains(99));
+    for (a, b) in expected.iter().zip(&found) {
+        assert!(a.pose.local(&b.pose).norm() < 1e-4, "{:?} {:?}", a.pose, b.pose);
+    }
+}
+
+#[test]
+fn merged_landmarks_are_one() {
+    let (steps, _) = steps(30);
+    let mut smoother = PointSmoother::new(params(Some(100.0)), &start()).unwrap();
+    for (k, step) in steps.iter().enumerate() {
+        smoother.advance(step.motion, &noise(), None).unwrap();
+        for (landmark, detection) in &step.seen {
+            // Landmark 4 is taken for a new one in the second half.
+            let name = if *landmark == 4 && k >= 15 { 40 } else { *landmark };
+            smoother.detect(name, detection).unwrap();
+        }
+        smoother.step(k as f64).unwrap();
+    }
+    smoother.merge(4, 40).unwrap();
+    smoother.finish().unwrap();
+    let (whole, _) = run(Some(100.0), &steps);
+    assert!(!smoother.contains(40));
+    assert!((smoother.landmarks()[&4] - whole.landmarks()[&4]).norm() < 0.02);
+}
+
+#[test]
+fn external_measurements_and_anchors_tie_the_map() {
+    let mut smoother = PointSmoother::new(
+        params(Some(10.0)),
+        &StartPose { covariance: Matrix3::identity() * 4.0, ..start() },
+    )
+    .unwrap();
+    let there = Pose2::new(3.0, 1.0, 0.5);
+    let seen =
+        |measured, covariance| PoseObservation::Position { antenna: Vector2::x(), measured, covariance };
+    for k in 0..5 {
+        smoother.advance(Pose2::identity(), &noise(), None).unwrap();
+        smoother
+            .observe(&seen(there.transform(&Vector2::x()), Matrix2::identity() * 0.01), &Pose2::identity())
+            .unwrap();
+        let heading = PoseObservation::Heading { measured: 0.5 + 0.2, variance: Matrix1::new(1e-4) };
+        smoother.observe(&heading, &Pose2::new(0.0, 0.0, 0.2)).unwrap();
+        let pose = PoseObservation::Pose {
+            measured: there.compose(&Pose2::new(1.0, 0.0, 0.2)),
+            covariance: Matrix3::identity() * 0.01,
+        };
+        smoother.observe(&pose, &Pose2::new(1.0, 0.0, 0.2)).unwrap();
+        smoother.step(k as f64).unwrap();
+    }
+    assert!(smoother.pose().unwrap().local(&there).norm() < 0.02);
+    smoother.add_anchor(7, Vector2::new(5.0, 5.0)).unwrap();
+    let place =
+        smoother.pose().unwrap().compose(&params(None).mount).inverse_transform(&Vector2::new(5.0, 5.0));
+    let detection = Detection {
+        range: place.norm(),
+        bearing: place.y.atan2(place.x),
+        covariance: Matrix2::identity() * 0.01,
+    };
+    smoother.detect(7, &detection).unwrap();
+    smoother.finish().unwrap();
+    assert_eq!(smoother.landmarks()[&7], Vector2::new(5.0, 5.0));
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_and_change_nothing() {
+    let mut smoother = PointSmoother::new(params(Some(10.0)), &start()).unwrap();
+    smoother.advance(Pose2::new(1.0, 0.0, 0.0), &noise(), None).unwrap();
+    let good = Detection { range: 2.0, bearing: 0.3, covariance: Matrix2::identity() * 0.01 };
+    for bad in [
+        Detection { range: 0.0, ..good },
+        Detection { range: f64::NAN, ..good },
+        Detection { bearing: f64::INFINITY, ..good },
+        Detection { covariance: Matrix2::zeros(), ..good },
+        Detection { covariance: Matrix2::identity() * f64::NAN, ..good },
+    ] {
+        assert!(smoother.detect(1, &bad).is_err(), "{bad:?}");
+        assert!(!smoother.contains(1));
+    }
+    assert!(smoother.advance(Pose2::new(f64::NAN, 0.0, 0.0), &noise(), None).is_err());
+    assert!(smoother.advance(Pose2::identity(), &(noise() * f64::NAN), None).is_err());
+    assert_eq!(smoother.newest(), 1);
+    smoother.detect(1, &good).unwrap();
+    smoother.step(0.0).unwrap();
+    assert_eq!(smoother.finish().unwrap().len(), 2);
+}
