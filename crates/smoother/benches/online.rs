@@ -21,8 +21,11 @@ fn main() {
     let Some(file) = given.or_else(stored) else { return println!("no file, and WAYFIX_DATA is not set") };
     let reader = BufReader::new(fs::File::open(&file).unwrap());
     let is_compressed = file.extension().is_some_and(|extension| extension == "gz");
-    let read =
-        if is_compressed { g2o::read(BufReader::new(MultiGzDecoder::new(reader))) } else { g2o::read(reader) };
+    let read = if is_compressed {
+        g2o::read(BufReader::new(MultiGzDecoder::new(reader)))
+    } else {
+        g2o::read(reader)
+    };
     let Ok(G2o::Planar(graph)) = read else { return println!("{}: no planar pose graph", file.display()) };
 
     let mut batch = graph.problem(Repair::Refuse).unwrap();

@@ -23,6 +23,9 @@ pub(super) struct Solution {
     pub(super) calibration: Vector2<f64>,
 }
 
+/// Place of a beacon with its covariance.
+type PlacedBeacon = (Vector2<f64>, Matrix2<f64>);
+
 /// The least squares problem of the first poses of a run.
 pub(super) struct RangeGraph {
     graph: Graph,
@@ -122,21 +125,24 @@ impl RangeGraph {
         Ok(fixed(&self.graph.marginals()?.covariance(calibration)?))
     }
 
-    /// Covariances of poses in their body frames, and of all beacons.
-    pub(super) fn covariances(
+    /// Covariances of poses in their body frames.
+    pub(super) fn pose_covariances(
         &mut self,
-        of_poses: &[usize],
-    ) -> Result<(Vec<Matrix3<f64>>, BTreeMap<u32, Matrix2<f64>>), SlamSmootherError> {
+        numbers: &[usize],
+    ) -> Result<Vec<(usize, Matrix3<f64>)>, SlamSmootherError> {
         let marginals = self.graph.marginals()?;
-        let mut poses = Vec::with_capacity(of_poses.len());
-        for index in of_poses {
-            poses.push(fixed(&marginals.covariance(self.poses[*index])?));
-        }
+        let of = |number: &usize| Ok((*number, fixed(&marginals.covariance(self.poses[*number])?)));
+        numbers.iter().map(of).collect()
+    }
+
+    /// Places of all beacons, with covariances.
+    pub(super) fn placed_beacons(&mut self) -> Result<BTreeMap<u32, PlacedBeacon>, SlamSmootherError> {
         let mut beacons = BTreeMap::new();
         for (id, beacon) in &self.beacons {
-            beacons.insert(*id, fixed(&marginals.covariance(*beacon)?));
+            let place = *self.graph.value(*beacon)?;
+            beacons.insert(*id, (place, fixed(&self.graph.marginals()?.covariance(*beacon)?)));
         }
-        Ok((poses, beacons))
+        Ok(beacons)
     }
 
     /// Residuals of the ranges, m, without kernels.

@@ -121,13 +121,12 @@ fn finish(
     let n = solution.poses.len();
     let period = n.div_ceil(MAX_COVARIANCES).max(1);
     let chosen: Vec<usize> = (0..n).step_by(period).collect();
-    let (pose_covariances, beacon_covariances) = graph.covariances(&chosen)?;
     let of_calibration = graph.calibration_covariance()?;
     let residuals = graph.range_residuals()?;
     let range_sigma = sigma_of(residuals.clone());
     Ok(RangeOnlyEstimate {
-        pose_covariances: chosen.into_iter().zip(pose_covariances).collect(),
-        beacons: solution.beacons.iter().map(|(id, place)| (*id, (*place, beacon_covariances[id]))).collect(),
+        pose_covariances: graph.pose_covariances(&chosen)?,
+        beacons: graph.placed_beacons()?,
         unplaced,
         calibration: graph.calibration()?,
         calibration_sigma: of_calibration.diagonal().map(f64::sqrt).into(),
