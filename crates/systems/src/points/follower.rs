@@ -46,7 +46,7 @@ struct Waiting {
 
 impl PointFollower {
     /// The follower that the parameters ask for.
-    pub(super) fn new(
+    pub(super) fn wanted(
         params: &PointSlamParams,
         start: Pose2<f64>,
         start_covariance: &Matrix3<f64>,

@@ -67,7 +67,7 @@ impl PointSystem {
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         let mut estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        estimator.follower = PointFollower::new(&params, start, start_covariance)?;
+        estimator.follower = PointFollower::wanted(&params, start, start_covariance)?;
         let front_end = PointSlamFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
