@@ -33,7 +33,7 @@ fn figure(run: &mut PointRun, name: &str) -> Option<f64> {
 }
 
 #[test]
-fn window_is_no_worse_than_the_filter_and_the_batch_leaves_it_alone() {
+fn window_beats_the_filter_and_the_batch_leaves_it_alone() {
     let mut filter = loop_log(Smoothing::Off);
     let mut reference = loop_log(Smoothing::Reference);
     let mut window = loop_log(Smoothing::FixedLag);
