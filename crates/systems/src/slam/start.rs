@@ -1,6 +1,9 @@
+use std::collections::BTreeSet;
+
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::ReferencePath;
 use wayfix_sensor_log::Stamp;
+use wayfix_slam_ekf::LandmarkId;
 
 use crate::system::{EventCounts, TrueStartPose};
 
@@ -28,6 +31,14 @@ pub(crate) fn warn_of_an_empty_map(events: &mut EventCounts, n_landmarks: usize)
             "map_is_empty",
             "no landmark was seen often enough to be in the map: the path is that of odometry and scan matching alone",
         );
+    }
+}
+
+/// Says which given anchors were never seen: their identity or their place is unknown to the log.
+pub(crate) fn warn_of_unseen_anchors(events: &mut EventCounts, unseen: &BTreeSet<LandmarkId>) {
+    for id in unseen {
+        let text = format!("anchor {id} was never seen: no observation of the log fits its place");
+        events.warn("anchor_never_seen", text);
     }
 }
 
