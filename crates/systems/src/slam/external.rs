@@ -25,7 +25,7 @@ pub struct ExternalState {
 ///
 /// # Errors
 /// Returns an error if the frame, the datum or the covariance is unknown.
-pub(super) fn in_map(
+pub(crate) fn in_map(
     measured: &PoseMeasurement,
     params: &ExternalParams,
     antenna: Vector2<f64>,
@@ -68,16 +68,8 @@ where
         if let MapMeasurement::Heading(sensor, measured) = measurement {
             let predicted = self.filter.robot().pose().compose(&motion).heading();
             let variance = self.filter.robot_covariance()[(2, 2)] + covariance.m33 + sensor.variance;
-            match heading_sign.admit(measured.radians(), predicted, variance) {
-                Ok(true) => {}
-                Ok(false) => {
-                    self.events.count("measurement_withheld");
-                    return Ok(());
-                }
-                Err(reason) => {
-                    self.events.refuse("measurement_gated", reason);
-                    return Ok(());
-                }
+            if !heading_sign.is_admitted(measured.radians(), predicted, variance, &mut self.events) {
+                return Ok(());
             }
         }
         match self.filter.update_moved(measurement, motion, covariance) {

@@ -21,6 +21,7 @@ pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 pub use external::ExternalState;
+pub(crate) use external::in_map;
 pub(crate) use figures::summary;
 pub use front_end::{FrontEnd, FrontEndState, MotionEstimate};
 pub(crate) use increment_numbers::increment_numbers;

@@ -4,7 +4,7 @@ use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{
-    FrontEnd, SlamEstimator, SlamSystem, StampedEstimate, start::warn_of_unseen_anchors, warn_of_an_empty_map,
+    FrontEnd, SlamEstimator, SlamSystem, StampedEstimate, start::{warn_of_retired_landmarks, warn_of_unseen_anchors}, warn_of_an_empty_map,
     warn_of_no_overlap,
 };
 use crate::system::{EventCounts, RunStep, System, drive};
@@ -43,8 +43,9 @@ where
         warn_of_no_overlap(self.system.events(), &self.truth, estimated);
         let n_landmarks = self.system.filter().n_landmarks();
         warn_of_an_empty_map(self.system.events(), n_landmarks);
-        let SlamEstimator { events, unseen_anchors, .. } = &mut self.system.estimator;
+        let SlamEstimator { filter, events, unseen_anchors, .. } = &mut self.system.estimator;
         warn_of_unseen_anchors(events, unseen_anchors);
+        warn_of_retired_landmarks(events, filter.n_retired());
         self
     }
 

@@ -42,6 +42,16 @@ pub(crate) fn warn_of_unseen_anchors(events: &mut EventCounts, unseen: &BTreeSet
     }
 }
 
+/// Says when landmarks have left the state: what is left then is more certain than it should be.
+pub(crate) fn warn_of_retired_landmarks(events: &mut EventCounts, n_retired: usize) {
+    if n_retired > 0 {
+        let text = format!(
+            "{n_retired} landmarks have left the state (filter.retire_after): each error then counts as new in every observation, and the covariance of the pose is too small"
+        );
+        events.warn("landmarks_retired", text);
+    }
+}
+
 /// Says when errors are differences from the poses of another program.
 pub(crate) fn warn_of_reference(events: &mut EventCounts, truth: &ReferencePath) {
     if truth.is_estimate() {

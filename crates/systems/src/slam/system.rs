@@ -212,12 +212,7 @@ where
     }
     fn finish(&mut self) -> Result<(), String> {
         self.take_waiting(self.taken_until, &Pose2::identity());
-        if self.heading_sign.is_mirrored() {
-            self.estimator.events.warn(
-                "compass_mirrored",
-                "headings of the compass grow clockwise, by their innovations: they are not used (REP 103 counts counter-clockwise)",
-            );
-        }
+        self.heading_sign.warn_if_mirrored(&mut self.estimator.events);
         self.front_end.finish(&mut self.estimator)
     }
     fn events(&mut self) -> &mut EventCounts {

@@ -3,6 +3,8 @@ use std::f64::consts::TAU;
 use wayfix_estimation_traits::wrap_angle;
 use wayfix_integrity::{IntegrityError, ProbabilityRatioTest, RatioVerdict};
 
+use super::EventCounts;
+
 /// Largest probability of a wrong verdict, and share of outliers among the headings: as rare as the correct measurements that the default gate of
 /// EKF-SLAM rejects.
 const ERROR_RATE: f64 = 1e-4;
@@ -31,7 +33,7 @@ impl HeadingSignTest {
     ///
     /// # Errors
     /// Returns why headings cannot be used.
-    pub(crate) fn admit(&mut self, measured: f64, predicted: f64, variance: f64) -> Result<bool, String> {
+    fn admit(&mut self, measured: f64, predicted: f64, variance: f64) -> Result<bool, String> {
         let likelihood = |innovation: f64| {
             let nis = wrap_angle(innovation).powi(2) / variance;
             let normal = (-0.5 * nis).exp() / (TAU * variance).sqrt();
@@ -48,14 +50,39 @@ impl HeadingSignTest {
         }
     }
 
+    /// Whether a heading may be used. Counts it otherwise.
+    pub(crate) fn is_admitted(
+        &mut self,
+        measured: f64,
+        predicted: f64,
+        variance: f64,
+        events: &mut EventCounts,
+    ) -> bool {
+        match self.admit(measured, predicted, variance) {
+            Ok(is_known) => {
+                events.add("measurement_withheld", u64::from(!is_known));
+                is_known
+            }
+            Err(reason) => {
+                events.refuse("measurement_gated", reason);
+                false
+            }
+        }
+    }
+
+    /// Says if the compass is mirrored by all headings so far.
+    pub(crate) fn warn_if_mirrored(&self, events: &mut EventCounts) {
+        if self.0.verdict() == RatioVerdict::Second {
+            events.warn(
+                "compass_mirrored",
+                "headings of the compass grow clockwise, by their innovations: they are not used (REP 103 counts counter-clockwise)",
+            );
+        }
+    }
+
     /// Logarithm of the odds that the compass is mirrored.
     pub(crate) fn log_odds(&self) -> f64 {
         self.0.sum()
-    }
-
-    /// Whether the compass is mirrored by all headings so far.
-    pub(crate) fn is_mirrored(&self) -> bool {
-        self.0.verdict() == RatioVerdict::Second
     }
 }
 
