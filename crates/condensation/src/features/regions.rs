@@ -95,15 +95,18 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_its_own_centre_and_sides() {
-        let block = |x: u32, y: u32| if (4..12).contains(&x) && (15..27).contains(&y) { 10 } else { 200 };
-        for dominance in [DominantGrayCriterion::Classes, DominantGrayCriterion::default()] {
-            let [grey, share, x, y, width, height] = features(dominance, block)[..6] else { unreachable!() };
-            assert!((grey - 10.0).abs() < 1e-9 && (share - 0.08).abs() < 1e-9, "{dominance:?}: {grey} {share}");
-            assert!((x - 8.0 / 40.0).abs() < 1e-9 && (y - 21.0 / 30.0).abs() < 1e-9);
-            // The variance of n pixels side by side is (n² - 1) / 12.
-            let sides = [(width * 40.0, 8.0_f64), (height * 30.0, 12.0)];
-            assert!(sides.iter().all(|(got, n)| (got - (n * n - 1.0).sqrt()).abs() < 1e-9), "{sides:?}");
-        }
+        let scene = |x: u32, y: u32| match (x, y) {
+            (4..12, 15..27) => 10,
+            (20..40, 0..10) => 120,
+            _ => 220,
+        };
+        let features = features(DominantGrayCriterion::Classes, scene);
+        let [grey, share, x, y, width, height] = features[..6] else { unreachable!() };
+        assert!((grey - 10.0).abs() < 1e-9 && (share - 0.08).abs() < 1e-9, "{grey} {share}");
+        assert!((x - 8.0 / 40.0).abs() < 1e-9 && (y - 21.0 / 30.0).abs() < 1e-9, "{x} {y}");
+        // The variance of n pixels side by side is (n² - 1) / 12.
+        let sides = [(width * 40.0, 8.0_f64), (height * 30.0, 12.0)];
+        assert!(sides.iter().all(|(got, n)| (got - (n * n - 1.0).sqrt()).abs() < 1e-9), "{sides:?}");
     }
 
     #[test]

@@ -214,7 +214,11 @@ impl<S: RelativeHeadSizeSource> HeadTracker<S> {
         if is_lost && color < self.params.adapt_above_intersection {
             return Ok(color);
         }
-        if color < self.params.no_evidence_below_intersection {
+        let has_evidence = match self.ratios {
+            Some(_) => candidate.log_ratio() > 0.0,
+            None => color >= self.params.no_evidence_below_intersection,
+        };
+        if !has_evidence {
             self.state.n_without_evidence += 1;
             self.state.is_lost = self.state.n_without_evidence > self.params.lost_after_n_frames;
             self.state.velocity = [0; 2];
