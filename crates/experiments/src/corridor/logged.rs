@@ -1,7 +1,6 @@
 use std::path::Path;
 
 use anyhow::Result;
-use wayfix_condensation::SlipProbabilities;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::views::{self, DescriptorKind, LoggedViews, ViewsParams};
 use wayfix_table_log::{MoveRow, MovedFrameFolder};
@@ -16,8 +15,7 @@ pub fn run_logged(folder: &Path) -> Result<ReportRun> {
     for (index, frame) in drive.frames.iter_mut().enumerate() {
         frame.row = Some(MoveRow { file: None, action: Some([1, 0]), place: Some([index, 0]) });
     }
-    let mut params = ViewsParams::default();
-    params.navigator.slip = SlipProbabilities { stay_probability: 0.1, other_action_probability: 0.1 };
+    let params = ViewsParams::default();
     let mut all = ReportRun { name: "corridor-log".to_owned(), ..ReportRun::default() };
     for feature in DescriptorKind::ALL {
         let run = LoggedViews::localize(&learned, &drive, None, feature, &params)?;

@@ -211,11 +211,9 @@ impl<S: RelativeHeadSizeSource> HeadTracker<S> {
         let n_pixels = n_inside(bins, &spans, candidate.center);
         let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
         let color = self.model.intersection(&histogram, n_pixels);
-        if is_lost && color < self.params.adapt_above_intersection {
-            return Ok(color);
-        }
         let has_evidence = match self.ratios {
             Some(_) => candidate.log_ratio() > 0.0,
+            None if is_lost => color >= self.params.adapt_above_intersection,
             None => color >= self.params.no_evidence_below_intersection,
         };
         if !has_evidence {
