@@ -33,6 +33,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 19] = [
             "estimation-traits",
             "evaluation",
             "gaussian-core",
+            "integrity",
             "kalman",
             "line-extract",
             "scan-match",
