@@ -26,13 +26,14 @@ pub use discrete::{
 pub use error::CondensationError;
 pub use features::{
     ColorMeanStdDescriptor, ConcatenatedDescriptor, DominantGrayCriterion, DominantGraysDescriptor,
-    Fft6Descriptor, GlobalDescriptor, IntensityRegionsDescriptor, StateDescriptorTable, View, ViewGrid, grey, mapped, shifted,
+    Fft6Descriptor, GlobalDescriptor, IntensityRegionsDescriptor, StateDescriptorTable, View, ViewGrid, grey,
+    mapped, shifted,
 };
 pub use image::{GrayImage, RgbImage};
 pub use learning::{
-    AppearanceLearningParams, AppearanceModel, LearnedMotion, LikelihoodTail, LoggedMove, N_DISTURBANCES, NoiseCovarianceParams,
-    OneViewPerPicture, PValueStatistics, RouteAppearanceModel, RouteAppearanceParams, SceneViews,
-    TransitionCounts, UnknownShiftAndLight, ViewSource,
+    AppearanceLearningParams, AppearanceModel, LearnedMotion, LikelihoodTail, LoggedMove, N_DISTURBANCES,
+    NoiseCovarianceParams, OneViewPerPicture, PValueStatistics, RouteAppearanceModel, RouteAppearanceParams,
+    SceneViews, TransitionCounts, UnknownShiftAndLight, ViewSource,
 };
 pub use navigation::{
     ActionSelection, NavigationEnvironment, NavigationOutcome, NavigationReport, Navigator, NavigatorParams,

@@ -10,8 +10,8 @@ use wayfix_sensor_log::{LogOpenOptions, MeasuredQuantity, PoseMeasurement, Recor
 use wayfix_slam_ekf::ExternalParams;
 use wayfix_systems::{
     cml::{
-        self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask, PanoramaMap,
-        ViewDescriptorReader,
+        self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
+        PanoramaMap, ViewDescriptorReader,
     },
     system::System,
 };
@@ -104,7 +104,11 @@ fn useless_measurements_are_counted_and_leave_the_belief() {
     type Measure<'a> = &'a dyn Fn(Stamp, &Pose2<f64>) -> Record;
     let cases: [(&str, Measure<'_>, &str); 5] = [
         ("no covariance", &|stamp, pose| measured(stamp, "map", position(pose), None), "record_refused"),
-        ("another frame", &|stamp, pose| measured(stamp, "odom", position(pose), Some(SIGMA)), "record_refused"),
+        (
+            "another frame",
+            &|stamp, pose| measured(stamp, "odom", position(pose), Some(SIGMA)),
+            "record_refused",
+        ),
         (
             "not finite",
             &|stamp, _| measured(stamp, "map", MeasuredQuantity::Heading(f64::NAN), Some(SIGMA)),

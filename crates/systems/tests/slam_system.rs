@@ -151,7 +151,8 @@ fn two_anchors_tie_the_map_to_the_world() {
 #[test]
 fn retired_landmarks_are_said_and_an_anchor_is_no_fault() {
     let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/long_loop.mcap");
-    let (records, _) = wayfix_sensor_log::open(log, &LogOpenOptions::default()).expect("a stored log").read_all();
+    let (records, _) =
+        wayfix_sensor_log::open(log, &LogOpenOptions::default()).expect("a stored log").read_all();
     let nees = |anchor_first: usize, retire_after: Option<usize>| {
         let mut params = PointSlamParams::of(RobotProfile::RangeBearing);
         (params.filter.anchor_first, params.filter.retire_after) = (anchor_first, retire_after);

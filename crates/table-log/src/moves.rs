@@ -44,7 +44,8 @@ impl MoveTable {
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
         let mut read = ReadReport::default();
         let table = Table::read(path, &mut read)?;
-        let refused = |reason: &str| RecordingError::Table { path: path.to_owned(), reason: reason.to_owned() };
+        let refused =
+            |reason: &str| RecordingError::Table { path: path.to_owned(), reason: reason.to_owned() };
         let rows = rows(&table, &mut read).ok_or_else(|| {
             refused("no column dx or column in a first row of names; known are file, dx, dy, column, row")
         })?;
@@ -69,9 +70,10 @@ fn rows(table: &Table, read: &mut ReadReport) -> Option<Vec<Option<MoveRow>>> {
         };
         let at = |index: Option<usize>| {
             let cell = index.map_or("0", cell);
-            cell.parse::<usize>().ok().filter(|at| *at < MAX_SIDE).ok_or_else(|| {
-                format!("{cell:?} is no place: a whole number from 0 to {}", MAX_SIDE - 1)
-            })
+            cell.parse::<usize>()
+                .ok()
+                .filter(|at| *at < MAX_SIDE)
+                .ok_or_else(|| format!("{cell:?} is no place: a whole number from 0 to {}", MAX_SIDE - 1))
         };
         Ok(MoveRow {
             file: file.map(|index| cell(index).to_owned()),
@@ -133,7 +135,10 @@ impl MovedFrameFolder {
             frames.push(MovedFrame { name, row, image: image.ok() });
         }
         if frames.iter().all(|frame| frame.image.is_none()) {
-            return Err(RecordingError::Nothing { path: folder.to_owned(), what: "readable PNG or JPEG images" });
+            return Err(RecordingError::Nothing {
+                path: folder.to_owned(),
+                what: "readable PNG or JPEG images",
+            });
         }
         Ok(Self { frames, has_table: table.is_some(), read })
     }
@@ -141,12 +146,15 @@ impl MovedFrameFolder {
 
 /// The row of each file, by its name, else by order.
 fn matched(files: &[PathBuf], rows: &[Option<MoveRow>]) -> Result<Vec<Option<MoveRow>>, RecordingError> {
-    let unmatched =
-        |reason| RecordingError::Unmatched { n_frames: files.len(), n_poses: rows.len(), reason };
+    let unmatched = |reason| RecordingError::Unmatched { n_frames: files.len(), n_poses: rows.len(), reason };
     let usable = || rows.iter().flatten();
     if !usable().any(|row| row.file.is_some()) {
         let as_many = rows.len() == files.len();
-        return if as_many { Ok(rows.to_vec()) } else { Err(unmatched("a row for each frame is needed, or a column of file names")) };
+        return if as_many {
+            Ok(rows.to_vec())
+        } else {
+            Err(unmatched("a row for each frame is needed, or a column of file names"))
+        };
     }
     let named = usable().filter_map(|row| Some((file_name(row.file.as_ref()?), row)));
     let by_file: BTreeMap<String, &MoveRow> =

@@ -217,7 +217,10 @@ mod tests {
         let learned = LearnedMotion::learn(&grid, &drive).unwrap();
         assert_eq!((learned.diffusion_sigmas(), learned.n_moves()), ([0.0; 2], 29));
         let mut predicted = [0.0; 30];
-        learned.transition(RIGHT).unwrap().predict(&std::array::from_fn::<_, 30, _>(|s| if s == 4 { 1.0 } else { 0.0 }), &mut predicted);
+        learned
+            .transition(RIGHT)
+            .unwrap()
+            .predict(&std::array::from_fn::<_, 30, _>(|s| if s == 4 { 1.0 } else { 0.0 }), &mut predicted);
         assert_eq!(predicted[5], 1.0);
     }
 

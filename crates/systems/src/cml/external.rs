@@ -34,7 +34,11 @@ impl ExternalSensors {
 
 impl CmlSystem {
     /// Takes a measurement of the pose now, or with the increment that leads beyond it.
-    pub(super) fn take_measurement(&mut self, stamp: Stamp, measured: &PoseMeasurement) -> Result<(), String> {
+    pub(super) fn take_measurement(
+        &mut self,
+        stamp: Stamp,
+        measured: &PoseMeasurement,
+    ) -> Result<(), String> {
         if !self.external.params.is_on() {
             self.events.count("measurement_ignored");
             return Ok(());
@@ -81,7 +85,8 @@ impl CmlSystem {
             return Ok(());
         }
         let area = self.localizer.map().area();
-        let gate = |degrees_of_freedom| ChiSquaredGate::from_probability(degrees_of_freedom, GATE_PROBABILITY);
+        let gate =
+            |degrees_of_freedom| ChiSquaredGate::from_probability(degrees_of_freedom, GATE_PROBABILITY);
         let localizer = &mut self.localizer;
         let corrected = match measurement {
             MapMeasurement::Position(sensor, position) => {

@@ -4,8 +4,9 @@ use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{
-    FrontEnd, SlamEstimator, SlamSystem, StampedEstimate, start::{warn_of_retired_landmarks, warn_of_unseen_anchors}, warn_of_an_empty_map,
-    warn_of_no_overlap,
+    FrontEnd, SlamEstimator, SlamSystem, StampedEstimate,
+    start::{warn_of_retired_landmarks, warn_of_unseen_anchors},
+    warn_of_an_empty_map, warn_of_no_overlap,
 };
 use crate::system::{EventCounts, RunStep, System, drive};
 

@@ -4,12 +4,13 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{PoseMeasurement, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    AnchorError, AnchorParams, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement, MeasurementDim, RobotDim, SlamAlloc,
-    SlamError, SlamSnapshot, observability::ObservabilityRecorder,
+    AnchorError, AnchorParams, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement,
+    MeasurementDim, RobotDim, SlamAlloc, SlamError, SlamSnapshot, observability::ObservabilityRecorder,
 };
 
 use super::{
-    AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate, external::in_map,
+    AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
+    external::in_map,
 };
 use crate::system::{EventCounts, HeadingSignTest, System};
 
@@ -66,8 +67,7 @@ where
     ) -> Result<Self, SavedMapError> {
         let ExternalState { last_increment, waiting, mirrored_compass_log_odds } = external;
         let not_finite = |_| SlamError::NotFinite { what: "saved odds of a mirrored compass" };
-        let heading_sign =
-            HeadingSignTest::from_log_odds(mirrored_compass_log_odds).map_err(not_finite)?;
+        let heading_sign = HeadingSignTest::from_log_odds(mirrored_compass_log_odds).map_err(not_finite)?;
         let stamp = Stamp::from_nanoseconds;
         let Self { front_end, mut estimator, .. } = self;
         let (model, params) = (estimator.filter.model().clone(), *estimator.filter.params());

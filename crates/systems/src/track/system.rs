@@ -2,7 +2,9 @@ use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
-use wayfix_visual_tracking::{BoundingBox, HeadDetector, RgbImage, TargetEstimate, TrackStatus, TrackingError};
+use wayfix_visual_tracking::{
+    BoundingBox, HeadDetector, RgbImage, TargetEstimate, TrackStatus, TrackingError,
+};
 
 use super::{
     BoxScore, FrameTracker, InitialTargetRegion, LostStatusScore, TargetColorDistribution, TargetTruth,

@@ -69,7 +69,9 @@ pub enum ViewsError {
         min: usize,
     },
     /// Places of the grid have no learned picture.
-    #[error("{n_without} of {n_places} places have no picture: each column and row up to the largest needs one")]
+    #[error(
+        "{n_without} of {n_places} places have no picture: each column and row up to the largest needs one"
+    )]
     PlacesWithoutPicture {
         /// Places without one.
         n_without: usize,
@@ -77,7 +79,9 @@ pub enum ViewsError {
         n_places: usize,
     },
     /// A logged drive has no move between two places of the grid.
-    #[error("none of {n_rows} rows tells a move between two places of a grid of {columns} × {rows}: dx, dy, column, row")]
+    #[error(
+        "none of {n_rows} rows tells a move between two places of a grid of {columns} × {rows}: dx, dy, column, row"
+    )]
     NoMoves {
         /// Rows of the table.
         n_rows: usize,

@@ -140,7 +140,8 @@ impl LoggedViews {
                 Metric::new("place_error_mean", sum as f64 / n, "places"),
                 Metric::new("place_error_max", largest as f64, "places"),
             ]);
-            let is_certain = |frame: usize| self.views[frame].best.confidence >= params.navigator.goal_confidence;
+            let is_certain =
+                |frame: usize| self.views[frame].best.confidence >= params.navigator.goal_confidence;
             let wrong = errors.iter().filter(|(frame, error)| *error > self.tolerance && is_certain(*frame));
             events.insert("certain_of_wrong_place".to_owned(), wrong.count() as u64);
         }
@@ -157,7 +158,8 @@ fn learn(
     feature: DescriptorKind,
     params: &ViewsParams,
 ) -> Result<((u32, u32), PositionGrid, StateDescriptorTable), ViewsError> {
-    let usable = learned.frames.iter().filter_map(|frame| Some((frame, frame.image.as_ref().and_then(decoded)?)));
+    let usable =
+        learned.frames.iter().filter_map(|frame| Some((frame, frame.image.as_ref().and_then(decoded)?)));
     let pictures: Vec<_> = usable.collect();
     let size = pictures.first().map_or((0, 0), |(_, picture)| picture.dimensions());
     let place = |row: Option<&MoveRow>| row.and_then(|row| row.place);
@@ -203,7 +205,11 @@ pub(super) fn learned_motion(grid: &PositionGrid, moves: &MoveTable) -> Result<L
     };
     let made: Vec<LoggedMove> = moves.rows.windows(2).filter_map(step).collect();
     if made.is_empty() {
-        return Err(ViewsError::NoMoves { n_rows: moves.rows.len(), columns: grid.columns(), rows: grid.rows() });
+        return Err(ViewsError::NoMoves {
+            n_rows: moves.rows.len(),
+            columns: grid.columns(),
+            rows: grid.rows(),
+        });
     }
     Ok(LearnedMotion::learn(grid, &made)?)
 }
@@ -221,7 +227,11 @@ fn index([dx, dy]: [i8; 2]) -> usize {
     GridMove::ALL.iter().position(|known| *known == wanted).expect("invariant: tables hold moves of one step")
 }
 
-fn extracted(picture: &RgbImage, feature: DescriptorKind, params: &ViewsParams) -> Result<Vec<f64>, ViewsError> {
+fn extracted(
+    picture: &RgbImage,
+    feature: DescriptorKind,
+    params: &ViewsParams,
+) -> Result<Vec<f64>, ViewsError> {
     let feature = feature.feature(params.dominant_gray_criterion);
     let mut features = vec![0.0; feature.n_components()];
     feature.extract(&View::whole(picture)?, &mut features);

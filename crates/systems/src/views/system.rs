@@ -116,8 +116,7 @@ impl ViewSystem {
     pub fn with_moves(self, moves: &MoveTable) -> Result<Self, ViewsError> {
         let motion = learned_motion(self.views.grid(), moves)?;
         let transitions = motion.transitions().to_vec();
-        let navigator =
-            Navigator::with_transitions(*self.views.grid(), transitions, self.params.navigator)?;
+        let navigator = Navigator::with_transitions(*self.views.grid(), transitions, self.params.navigator)?;
         Ok(Self { navigator, motion: Some(motion), ..self })
     }
 

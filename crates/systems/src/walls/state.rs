@@ -113,8 +113,15 @@ impl WallSystem {
         saved: SavedWallMap,
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, external, front_end: state } =
-            saved;
+        let SlamState {
+            filter,
+            association,
+            next_id,
+            taken_until,
+            dead_reckoning,
+            external,
+            front_end: state,
+        } = saved;
         check_association(asked, association)?;
         state.check()?;
         let laser_follows_log = params.laser_pose.is_none() && state.laser_follows_log;

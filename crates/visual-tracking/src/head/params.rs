@@ -25,8 +25,7 @@ pub struct HeadTrackerParams {
     pub color_adaptation_rate: f64,
     /// Intersection above which they do. Default 0.6.
     pub adapt_above_intersection: f64,
-    /// With a fixed gradient weight: intersection below which there is no evidence of the head. Otherwise there is none where an ellipse is likelier the
-    /// surroundings than the head. Default 0.3.
+    /// Intersection below which there is no evidence of the head. Default 0.3.
     pub no_evidence_below_intersection: f64,
     /// Pictures in a row without evidence after which the head is lost. Default 8.
     pub lost_after_n_frames: usize,

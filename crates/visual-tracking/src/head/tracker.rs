@@ -211,12 +211,10 @@ impl<S: RelativeHeadSizeSource> HeadTracker<S> {
         let n_pixels = n_inside(bins, &spans, candidate.center);
         let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
         let color = self.model.intersection(&histogram, n_pixels);
-        let has_evidence = match self.ratios {
-            Some(_) => candidate.log_ratio() > 0.0,
-            None if is_lost => color >= self.params.adapt_above_intersection,
-            None => color >= self.params.no_evidence_below_intersection,
-        };
-        if !has_evidence {
+        if is_lost && color < self.params.adapt_above_intersection {
+            return Ok(color);
+        }
+        if color < self.params.no_evidence_below_intersection {
             self.state.n_without_evidence += 1;
             self.state.is_lost = self.state.n_without_evidence > self.params.lost_after_n_frames;
             self.state.velocity = [0; 2];

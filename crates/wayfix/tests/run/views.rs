@@ -214,7 +214,7 @@ fn invalid_parameters_and_options_are_refused_by_name() {
         assert!(outcome.stderr.contains(key), "{text}: {}", outcome.stderr);
     }
     for (more, what_is_right) in [
-        (["--feature", "sift"], "[possible values: mean-var, fft6, hist6, joined]"),
+        (["--feature", "sift"], "[possible values: mean-var, fft6, hist6, regions, joined]"),
         (["--normalization", "some"], "[possible values: none, whole-scene, online]"),
         (["--shift", "4"], "two whole numbers"),
         (["--view", "0"], "1..=1000000"),

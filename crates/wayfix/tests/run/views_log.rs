@@ -1,6 +1,11 @@
 //! `wayfix run views --log`: pictures with actions, on a painted scene.
 
-use std::{ffi::OsStr, fmt::Write as _, fs, path::PathBuf};
+use std::{
+    ffi::OsStr,
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use image::imageops::crop_imm;
 use rand::{RngExt, SeedableRng};
@@ -56,7 +61,7 @@ fn folder(scratch: &Scratch, name: &str, moves: &[([i32; 2], [u32; 2])]) -> Path
     folder
 }
 
-fn run(log: &PathBuf, learned: &PathBuf, more: &[&OsStr]) -> Outcome {
+fn run(log: &Path, learned: &Path, more: &[&OsStr]) -> Outcome {
     let first = ["run", "views", "--json", "--log"].map(OsStr::new);
     let paths = [log.as_os_str(), OsStr::new("--learn-from"), learned.as_os_str()];
     wayfix(first.into_iter().chain(paths).chain(more.iter().copied()))
@@ -67,8 +72,8 @@ fn slip_is_learned_from_a_logged_drive() {
     let scratch = Scratch::new();
     let (learned, log) = (learned(&scratch), folder(&scratch, "drive", &drive(3, 60)));
     let moves = scratch.file("moves.csv", table(&drive(4, 400)));
-    let [with, without] = [vec![OsStr::new("--moves"), moves.as_os_str()], Vec::new()]
-        .map(|more| run(&log, &learned, &more));
+    let [with, without] =
+        [vec![OsStr::new("--moves"), moves.as_os_str()], Vec::new()].map(|more| run(&log, &learned, &more));
     assert_eq!(with.metric("n_logged_moves"), 399.0, "the first row has no place before it");
     assert!(with.metric("diffusion_sigma_columns") > 0.0 && with.metric("diffusion_sigma_rows") > 0.0);
     for (outcome, name) in [(&with, "learned"), (&without, "as commanded")] {
@@ -77,7 +82,7 @@ fn slip_is_learned_from_a_logged_drive() {
         println!("{name}: {share}, mean error {} places", outcome.metric("place_error_mean"));
     }
     assert!(with.metric("localized_frame_share") >= without.metric("localized_frame_share"));
-    assert!(with.metric("place_error_mean") < 1.0, "views overlap by three quarters");
+    assert!(with.metric("place_error_mean") < without.metric("place_error_mean"));
 }
 
 #[test]

@@ -12,8 +12,8 @@ use crate::{
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     cml::{
-        self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem,
-        CmlTask, PanoramaMap, ViewDescriptorReader,
+        self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose,
+        CmlSystem, CmlTask, PanoramaMap, ViewDescriptorReader,
     },
     system::{RunStep, System},
 };

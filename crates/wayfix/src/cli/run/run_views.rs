@@ -16,8 +16,8 @@ use wayfix_systems::{
     settings::from_toml,
     system::Stopwatch,
     views::{
-        self, DescriptorKind, LightNormalization, LoggedViews, RealSceneTransform, ViewSystem, ViewSystemConfig,
-        ViewsParams, ViewsRun,
+        self, DescriptorKind, LightNormalization, LoggedViews, RealSceneTransform, ViewSystem,
+        ViewSystemConfig, ViewsParams, ViewsRun,
     },
 };
 use wayfix_table_log::{MoveTable, MovedFrameFolder};
@@ -96,7 +96,17 @@ pub(in crate::cli) struct Arguments {
 
 /// What a logged drive has no use for.
 const SCENE_OPTIONS: [&str; 11] = [
-    "scene", "view", "step", "normalization", "trials", "gain", "offset", "gamma", "shift", "register", "informed",
+    "scene",
+    "view",
+    "step",
+    "normalization",
+    "trials",
+    "gain",
+    "offset",
+    "gamma",
+    "shift",
+    "register",
+    "informed",
 ];
 
 const EXAMPLES: &str = "\
