@@ -1,5 +1,6 @@
 use wayfix_gaussian_core::GaussianError;
 use wayfix_integrity::IntegrityError;
+use wayfix_kalman::KalmanError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,6 +98,20 @@ pub enum AppearanceMapError {
         /// The values it may take.
         range: &'static str,
     },
+    /// A measurement of the pose is invalid.
+    #[error(transparent)]
+    Kalman(#[from] KalmanError),
+    /// A measurement of the pose fits no component of the belief.
+    #[error("an outlier: NIS {nis:.1}, at most {threshold:.1} is expected")]
+    Outlier {
+        /// The least normalized innovation squared.
+        nis: f64,
+        /// The largest that would have been accepted.
+        threshold: f64,
+    },
+    /// A measurement of the pose needs a pose to correct, and none is known.
+    #[error("no pose is known that could be corrected")]
+    UnknownPose,
     /// All numbers of references have been given out.
     #[error("no number is left for another reference")]
     ReferenceIdsExhausted,

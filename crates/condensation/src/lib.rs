@@ -3,8 +3,8 @@
 //! | part | what is in it |
 //! | --- | --- |
 //! | discrete filter | [`DiscreteFilter`] over any [`DiscreteStateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
-//! | features | [`GlobalDescriptor`]: [`ColorMeanStdDescriptor`], [`Fft6Descriptor`], [`DominantGraysDescriptor`], [`ConcatenatedDescriptor`], your own; all views of a scene at once |
-//! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteAppearanceModel`]; [`TransitionCounts`]; p-values |
+//! | features | [`GlobalDescriptor`]: [`ColorMeanStdDescriptor`], [`Fft6Descriptor`], [`DominantGraysDescriptor`], [`IntensityRegionsDescriptor`], [`ConcatenatedDescriptor`], your own; all views of a scene at once |
+//! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteAppearanceModel`]; [`LearnedMotion`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceLearningParams::online`] |
 //! | navigation | [`ViewLocalizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
@@ -26,13 +26,14 @@ pub use discrete::{
 pub use error::CondensationError;
 pub use features::{
     ColorMeanStdDescriptor, ConcatenatedDescriptor, DominantGrayCriterion, DominantGraysDescriptor,
-    Fft6Descriptor, GlobalDescriptor, StateDescriptorTable, View, ViewGrid, grey, mapped, shifted,
+    Fft6Descriptor, GlobalDescriptor, IntensityRegionsDescriptor, StateDescriptorTable, View, ViewGrid, grey,
+    mapped, shifted,
 };
 pub use image::{GrayImage, RgbImage};
 pub use learning::{
-    AppearanceLearningParams, AppearanceModel, LikelihoodTail, N_DISTURBANCES, NoiseCovarianceParams,
-    OneViewPerPicture, PValueStatistics, RouteAppearanceModel, RouteAppearanceParams, SceneViews,
-    TransitionCounts, UnknownShiftAndLight, ViewSource,
+    AppearanceLearningParams, AppearanceModel, LearnedMotion, LikelihoodTail, LoggedMove, N_DISTURBANCES,
+    NoiseCovarianceParams, OneViewPerPicture, PValueStatistics, RouteAppearanceModel, RouteAppearanceParams,
+    SceneViews, TransitionCounts, UnknownShiftAndLight, ViewSource,
 };
 pub use navigation::{
     ActionSelection, NavigationEnvironment, NavigationOutcome, NavigationReport, Navigator, NavigatorParams,

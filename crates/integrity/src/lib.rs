@@ -3,6 +3,7 @@
 //! | question | type |
 //! | --- | --- |
 //! | Have the measurements changed? | [`CusumTest`]: Page's cumulative sum |
+//! | Which of two hypotheses holds? | [`ProbabilityRatioTest`]: Wald's sequential test |
 //! | Has somebody moved the robot? | [`ShiryaevRobertsTest`]: Shiryaev–Roberts over distance |
 //! | Where is it then? | [`RelocalizationTest`]: the present hypothesis against the alternatives of a search |
 //!
@@ -12,10 +13,12 @@ mod change_test;
 mod cusum;
 mod error;
 mod params;
+mod ratio_test;
 mod relocalization;
 
 pub use change_test::ShiryaevRobertsTest;
 pub use cusum::CusumTest;
 pub use error::IntegrityError;
 pub use params::RelocalizationParams;
+pub use ratio_test::{ProbabilityRatioTest, RatioVerdict};
 pub use relocalization::{AlternativeHypothesis, RelocalizationCandidate, RelocalizationTest};

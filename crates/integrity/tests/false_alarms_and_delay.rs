@@ -4,7 +4,9 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use wayfix_integrity::{CusumTest, RelocalizationParams, ShiryaevRobertsTest};
+use wayfix_integrity::{
+    CusumTest, ProbabilityRatioTest, RatioVerdict, RelocalizationParams, ShiryaevRobertsTest,
+};
 
 const SEED: u64 = 41;
 const N_RUNS: usize = 1000;
@@ -98,4 +100,29 @@ fn delay_grows_with_the_logarithm_of_the_threshold() {
     let [(short, a), (long, b)] = delays;
     let known = 100_f64.ln() / (SHIFT * SHIFT / 2.0);
     assert!((long - short - known).abs() < a + b, "{short} ± {a} and {long} ± {b} measurements");
+}
+
+#[test]
+fn ratio_test_keeps_its_error_rate_for_any_length() {
+    const RATE: f64 = 0.05;
+    let fresh = ProbabilityRatioTest::from_error_rate(RATE).unwrap();
+    let (mut test, mut current, mut n_wrong, mut verdict) = (fresh, 0, 0, RatioVerdict::Undecided);
+    // The first hypothesis holds; a run ends with a verdict.
+    let (length, interval) = mean_run_length(0.0, |run, ratio| {
+        if run != current {
+            n_wrong += usize::from(verdict == RatioVerdict::Second);
+            (test, current) = (fresh, run);
+        }
+        verdict = test.observe(ratio).unwrap();
+        verdict != RatioVerdict::Undecided
+    });
+    // Ville's bound; the count has a standard deviation of sqrt(N RATE).
+    let bound = N_RUNS as f64 * RATE;
+    assert!(n_wrong > 0 && (n_wrong as f64) < bound + 2.0 * bound.sqrt(), "{n_wrong} of {N_RUNS}");
+    // Wald: about -ln RATE / I measurements, I = δ²/2, and the overshoot of 0.583 δ at the bound.
+    let known = (-RATE.ln() + 0.583 * SHIFT) / (SHIFT * SHIFT / 2.0);
+    assert!((length - known).abs() < interval + 0.1 * known, "{length} ± {interval}, known {known}");
+    assert!(ProbabilityRatioTest::from_error_rate(0.0).is_err());
+    let mut test = fresh.with_sum(f64::INFINITY).unwrap();
+    assert!(test.observe(f64::NEG_INFINITY).is_err() && test.verdict() == RatioVerdict::Second);
 }

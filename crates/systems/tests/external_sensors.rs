@@ -7,7 +7,7 @@ use wayfix_sensor_log::{
     Velocity, open,
 };
 use wayfix_slam_ekf::{AnchorParams, ExternalParams};
-use wayfix_systems::points::{self, PointRun, PointSlamParams, RobotProfile};
+use wayfix_systems::points::{self, PointRun, PointSlamParams, RobotProfile, SavedPointMap};
 use wayfix_systems::walls::{self, WallSlamParams};
 
 fn at(seconds: f64, data: RecordData) -> Record {
@@ -164,7 +164,70 @@ fn positions_and_anchors_correct_walls() {
     let [expected, found] = ["wall_expected", "wall_in_search_band"].map(|event| run.events().get(event));
     assert!(found > 0 && found <= expected, "{found} of {expected}");
 
+    let far = AnchorParams { id: 70, at: [[900.0, 0.0], [900.0, 5.0]], covariance: None };
+    params.anchors = vec![far];
+    let mut run = walls::run(&records, &params, |_| {}).expect("a usable log");
+    assert_eq!(run.events().get("anchor_never_seen"), 1);
+    assert!(run.events().warnings().iter().any(|warning| warning.text.contains("anchor 70 was never seen")));
+
     params.anchors = vec![AnchorParams { id: 1, at: [[0.0, 0.0]; 2], covariance: None }];
     let nowhere = walls::run(&records, &params, |_| {}).err().expect("a wall of no length").to_string();
     assert!(nowhere.starts_with("anchor 1: landmark is not finite"), "{nowhere}");
+}
+
+/// The robot drives circles of 5 m by increments of 1 Hz; a compass reads between them.
+fn circle(sign: f64, n_readings: usize) -> Vec<Record> {
+    let per_second = Pose2::exp(&Vector3::new(1.0, 0.0, 0.2));
+    let mut records = vec![at(0.0, RecordData::TruePose(Pose2::identity()))];
+    let mut truth = Pose2::identity();
+    for second in 1..=60 {
+        truth = truth.compose(&per_second);
+        records.push(at(f64::from(second), RecordData::OdometryIncrement(per_second)));
+        let seen = truth.inverse_transform(&Vector2::new(1.0, 5.0));
+        let (range, bearing) = (seen.norm(), seen.y.atan2(seen.x));
+        let seen = Detection { target: DetectionTarget::Landmark(7), range, bearing };
+        records.push(at(f64::from(second), RecordData::Detections(vec![seen])));
+    }
+    let reading = |second: usize| {
+        let seconds = second as f64 + 0.5;
+        measured(seconds, "map", MeasuredQuantity::Heading(sign * 0.2 * seconds), Some(0.05))
+    };
+    with(records, (0..n_readings).map(reading))
+}
+
+#[test]
+fn mirrored_compass_is_not_used_and_is_said() {
+    let mut right = slam(&circle(1.0, 60), in_map());
+    // Two readings near the axis of the mirror leave the sign open.
+    assert!(right.events().get("measurement_withheld") <= 2);
+    assert!(right.events().get("measurement_accepted") >= 58);
+    assert_eq!(right.events().get("compass_mirrored"), 0);
+
+    let mut mirrored = slam(&circle(-1.0, 60), in_map());
+    let [withheld, gated] =
+        ["measurement_withheld", "measurement_gated"].map(|event| mirrored.events().get(event));
+    assert!(gated >= 58 && withheld + gated == 60, "{gated} refused, {withheld} withheld");
+    assert_eq!(mirrored.events().get("compass_mirrored"), 1);
+    let without = slam(&circle(-1.0, 0), in_map());
+    assert_eq!(mirrored.system.filter().robot(), without.system.filter().robot());
+}
+
+#[test]
+fn waiting_measurements_are_saved_and_resumed() {
+    let records = circle(1.0, 60);
+    let params = PointSlamParams { external: in_map(), ..PointSlamParams::of(RobotProfile::Generic) };
+    let mut halves = Vec::new();
+    let whole = points::run(&records, &params, |step| {
+        if let RecordData::PoseMeasurement(_) = step.record.data {
+            halves.push(step.system.save());
+        }
+    })
+    .expect("a usable log");
+    assert!(halves.iter().skip(1).all(|half| half.external.waiting.len() == 1));
+    for half in halves {
+        let bytes = half.to_bytes().expect("a state");
+        let half = SavedPointMap::from_bytes(&bytes).expect("the same state");
+        let resumed = points::run_on(half, &records, &params, |_| {}).expect("a usable log");
+        assert_eq!(resumed.system.save(), whole.system.save());
+    }
 }

@@ -186,7 +186,7 @@ fn by_file<'a>(rows: impl Iterator<Item = &'a PoseRow>) -> BTreeMap<String, &'a 
 }
 
 /// Keys that match a file: its name, its name without extension, the number in it.
-fn keys(name: &str) -> Vec<String> {
+pub(super) fn keys(name: &str) -> Vec<String> {
     // In `1.05` the dot is a decimal point.
     let is_extension = |end: &str| end.bytes().any(|byte| byte.is_ascii_alphabetic());
     let stem = name.rsplit_once('.').filter(|(_, end)| is_extension(end)).map_or(name, |(stem, _)| stem);
@@ -220,14 +220,14 @@ fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Plac
     Some(Placed { seconds, position: [between(early.x, late.x), between(early.y, late.y)], heading })
 }
 
-fn read_image(path: &Path) -> Result<EncodedImage, String> {
+pub(super) fn read_image(path: &Path) -> Result<EncodedImage, String> {
     let bytes = fs::read(path).map_err(|error| error.to_string())?;
     let image = EncodedImage::from_bytes(bytes).ok_or("neither PNG nor JPEG")?;
     image.size().map_err(|error| error.to_string())?;
     Ok(image)
 }
 
-fn name_of(path: &Path) -> String {
+pub(super) fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

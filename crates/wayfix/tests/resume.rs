@@ -121,7 +121,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
             let error = SavedPointMap::from_bytes(&damaged).unwrap_err();
             let expected = match place {
                 0..8 => matches!(error, SavedMapError::NotASavedMap),
-                8..12 => matches!(error, SavedMapError::Version { known: 3, .. }),
+                8..12 => matches!(error, SavedMapError::Version { known: 4, .. }),
                 12..20 => matches!(error, SavedMapError::Length { .. }),
                 _ => matches!(error, SavedMapError::Checksum { .. }),
             };

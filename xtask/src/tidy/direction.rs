@@ -34,6 +34,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 20] = [
             "estimation-traits",
             "evaluation",
             "gaussian-core",
+            "integrity",
             "kalman",
             "line-extract",
             "scan-match",

@@ -240,7 +240,7 @@ where
     }
 
     /// Replaces the belief and its test; `is_moved` says that an alternative has won.
-    fn replace_belief(
+    pub(super) fn replace_belief(
         &mut self,
         belief: Belief,
         kidnap: KidnapTest,

@@ -3,6 +3,7 @@
 
 mod appearance_localizer;
 mod belief;
+mod correct;
 mod learn;
 mod match_view;
 mod outcome;

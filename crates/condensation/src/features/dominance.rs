@@ -43,6 +43,38 @@ impl DominantGrayCriterion {
             Self::SoftClasses { softness } => soft_classes(density, softness),
         }
     }
+
+    /// Share of each grey value that belongs to the first, second and third region: those of its class, else the greys that count as the dominating one.
+    pub(super) fn memberships(self, density: &Density) -> [Density; 3] {
+        let mut memberships = [[0.0; 256]; 3];
+        let mut add = |weight: f64, ranges: &[(usize, usize)]| {
+            for (membership, &(from, to)) in memberships.iter_mut().zip(ranges) {
+                membership[from..to].iter_mut().for_each(|share| *share += weight);
+            }
+        };
+        match self {
+            Self::Counts | Self::Peaks { .. } => {
+                let reach = if let Self::Peaks { sigma } = self { sigma.max(0.0) as usize } else { 0 };
+                let near = |(grey, _): (f64, f64)| {
+                    let grey = grey as usize;
+                    (grey.saturating_sub(reach), (grey + reach + 1).min(256))
+                };
+                add(1.0, &self.of(density).into_iter().map(near).collect::<Vec<_>>());
+            }
+            Self::Classes => {
+                let (a, b) = best_division(&Cumulated::new(density));
+                add(1.0, &[(0, a), (a, b), (b, 256)]);
+            }
+            Self::SoftClasses { softness } => {
+                let divisions = soft_divisions(&Cumulated::new(density), density, softness);
+                let total: f64 = divisions.iter().map(|(weight, ..)| weight).sum();
+                for (weight, a, b) in divisions {
+                    add(weight / total, &[(0, a), (a, b), (b, 256)]);
+                }
+            }
+        }
+        memberships
+    }
 }
 
 fn counts(density: &Density) -> Vec<(f64, f64)> {
@@ -70,45 +102,56 @@ fn highest(mut pairs: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     pairs
 }
 
-/// Exact: for every upper bound the best lower one, which grows with it, so that halving the range saves most comparisons.
 fn classes(density: &Density) -> Vec<(f64, f64)> {
     let cumulated = Cumulated::new(density);
+    let (lower, upper) = best_division(&cumulated);
+    vec![cumulated.class(0, lower), cumulated.class(lower, upper), cumulated.class(upper, 256)]
+}
+
+/// Exact: for every upper bound the best lower one, which grows with it, so that halving the range saves most comparisons.
+fn best_division(cumulated: &Cumulated) -> (usize, usize) {
     let mut lower = [0; 257];
     cumulated.best_lower(2..256, 1..255, &mut lower);
     let quality = |upper: usize| cumulated.two_classes(lower[upper], upper) + cumulated.gain(upper, 256);
     let upper = (2..256).fold(2, |best, upper| if quality(upper) > quality(best) { upper } else { best });
-    vec![cumulated.class(0, lower[upper]), cumulated.class(lower[upper], upper), cumulated.class(upper, 256)]
+    (lower[upper], upper)
 }
 
 fn soft_classes(density: &Density, softness: f64) -> Vec<(f64, f64)> {
+    let cumulated = Cumulated::new(density);
+    // Sums of weights, of shares and of first moments of each class.
+    let (mut total, mut shares, mut means) = (0.0, [0.0; 3], [0.0; 3]);
+    for (weight, a, b) in soft_divisions(&cumulated, density, softness) {
+        total += weight;
+        for (k, (from, to)) in [(0, a), (a, b), (b, 256)].into_iter().enumerate() {
+            let (mean, share) = cumulated.class(from, to);
+            means[k] += weight * mean;
+            shares[k] += weight * share;
+        }
+    }
+    (0..3).map(|k| (means[k] / total, shares[k] / total)).collect()
+}
+
+/// Divisions of a histogram into three classes, with their weights; the best one has weight 1.
+fn soft_divisions(cumulated: &Cumulated, density: &Density, softness: f64) -> Vec<(f64, usize, usize)> {
     /// Grey levels between bounds that are tried: averaging makes finer ones pointless.
     const STEP: usize = 4;
-    let cumulated = Cumulated::new(density);
     let mean = cumulated.moment[256];
     let variance: f64 = density.iter().enumerate().map(|(i, p)| p * (i as f64 - mean).powi(2)).sum();
     if variance <= 0.0 || softness <= 0.0 {
-        return classes(density);
+        let (lower, upper) = best_division(cumulated);
+        return vec![(1.0, lower, upper)];
     }
     let bounds = || (STEP..256).step_by(STEP);
     let divisions = || bounds().flat_map(|a| (a + STEP..256).step_by(STEP).map(move |b| (a, b)));
     let quality: Vec<f64> =
         divisions().map(|(a, b)| cumulated.two_classes(a, b) + cumulated.gain(b, 256)).collect();
     let best = quality.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Sums of weights, of shares and of first moments of each class.
-    let (mut total, mut shares, mut means) = (0.0, [0.0; 3], [0.0; 3]);
-    for ((a, b), quality) in divisions().zip(&quality) {
+    let weight = |((a, b), quality): ((usize, usize), &f64)| {
         let exponent = (quality - best) / (softness * variance);
-        if exponent > -30.0 {
-            let weight = exponent.exp();
-            total += weight;
-            for (k, (from, to)) in [(0, a), (a, b), (b, 256)].into_iter().enumerate() {
-                let (mean, share) = cumulated.class(from, to);
-                means[k] += weight * mean;
-                shares[k] += weight * share;
-            }
-        }
-    }
-    (0..3).map(|k| (means[k] / total, shares[k] / total)).collect()
+        (exponent > -30.0).then(|| (exponent.exp(), a, b))
+    };
+    divisions().zip(&quality).filter_map(weight).collect()
 }
 
 /// Shares and first moments of the values below each bound.

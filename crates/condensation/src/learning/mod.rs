@@ -3,6 +3,7 @@
 mod appearance;
 mod disturbance;
 mod likelihood;
+mod motion;
 mod noise;
 mod p_value;
 mod params;
@@ -16,6 +17,7 @@ pub use appearance::AppearanceModel;
 pub use disturbance::{N_DISTURBANCES, UnknownShiftAndLight};
 pub(crate) use likelihood::DisturbanceBelief;
 pub use likelihood::LikelihoodTail;
+pub use motion::{LearnedMotion, LoggedMove};
 pub use noise::NoiseCovarianceParams;
 pub use p_value::PValueStatistics;
 pub use params::AppearanceLearningParams;

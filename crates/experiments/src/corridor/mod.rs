@@ -11,8 +11,10 @@
 
 mod figures;
 mod localize;
+mod logged;
 mod plots;
 mod run;
 mod traverses;
 
+pub use logged::run_logged;
 pub use run::run;

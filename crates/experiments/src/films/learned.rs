@@ -33,7 +33,8 @@ pub fn learned(
     let training = SyntheticFilm { seed: seeds.end, n_frames: N_TRAINING, ..*film };
     let mut series = Series::default();
     follow(&training, params, None, |colors| series.add(colors))?;
-    let dynamics = ColorDynamics::learn(&series.states, 0.0)?.dynamics;
+    let learned = ColorDynamics::learn(&series.sequences, 0.0)?;
+    let dynamics = learned.dynamics;
     let mut metrics = Vec::new();
     for (name, dynamics) in [("learned", Some(dynamics)), ("default", None)] {
         let one = |seed: u64| follow(&SyntheticFilm { seed, ..*film }, params, dynamics, |_| {});
@@ -41,7 +42,7 @@ pub fn learned(
         let scores: Vec<&FilmTrackingScore> = scores.iter().collect();
         metrics.extend(over_seeds(&scores, film.occlusion).into_iter().map(|metric| prefixed(name, metric)));
     }
-    metrics.push(Metric::new("n_training_states", series.states.len() as f64, ""));
+    metrics.push(Metric::new("n_training_steps", learned.n_steps as f64, ""));
     let notes = vec![format!("A and B from the film of seed {}, which is not judged.", training.seed)];
     Ok(ReportRun { metrics, notes, ..ReportRun::default() })
 }
@@ -50,7 +51,7 @@ fn follow(
     film: &SyntheticFilm,
     params: &ColorContourTrackerParams,
     dynamics: Option<ColorDynamics>,
-    mut observe: impl FnMut(&PrincipalColors),
+    mut observe: impl FnMut(Option<&PrincipalColors>),
 ) -> Result<FilmTrackingScore> {
     let mut frames = film.frames()?;
     let first = frames.next().context("a film without frames")?;
@@ -59,33 +60,59 @@ fn follow(
         tracker = tracker.with_dynamics(dynamics);
     }
     let (mut rng, mut score) = (ChaCha8Rng::seed_from_u64(film.seed), FilmTrackingScore::default());
-    observe(tracker.colors());
+    observe(Some(tracker.colors()));
     for frame in frames {
         let target = tracker.track(&pixels(&frame)?, &mut rng)?;
-        if target.status == TrackStatus::Tracked {
-            observe(tracker.colors());
-        }
+        observe((target.status == TrackStatus::Tracked).then(|| tracker.colors()));
         score.add(&target, &frame)?;
     }
     Ok(score)
 }
 
-/// The states of a training film; angles are summed from frame to frame.
+/// The states of a training film in sequences without a gap; angles are summed from frame to frame.
 #[derive(Default)]
 struct Series {
-    states: Vec<ColorStateVector>,
+    sequences: Vec<Vec<ColorStateVector>>,
     last: Option<(PrincipalColors, [f64; 2])>,
 }
 
 impl Series {
-    fn add(&mut self, colors: &PrincipalColors) {
+    /// Adds the next frame; a lost target ends the sequence.
+    fn add(&mut self, colors: Option<&PrincipalColors>) {
+        let Some(colors) = colors else {
+            self.last = None;
+            return;
+        };
         let angles = self.last.as_ref().map_or([0.0; 2], |(last, sum)| {
             let turned = colors.angles_since(last);
             [sum[0] + turned[0], sum[1] + turned[1]]
         });
         let mut state = ColorDistributionState::at_rest(colors).value;
         (state[6], state[7]) = (angles[0], angles[1]);
-        self.states.push(state);
+        if self.last.is_none() {
+            self.sequences.push(Vec::new());
+        }
+        if let Some(sequence) = self.sequences.last_mut() {
+            sequence.push(state);
+        }
         self.last = Some((*colors, angles));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_lost_target_ends_the_sequence() {
+        let cloud = [Vector3::new(0.2, 0.5, 0.5), Vector3::new(0.4, 0.6, 0.5), Vector3::new(0.3, 0.5, 0.8)];
+        let colors = PrincipalColors::of(&cloud, &[1.0; 3], None).unwrap();
+        let mut series = Series::default();
+        for is_tracked in [true, true, false, false, true] {
+            series.add(is_tracked.then_some(&colors));
+        }
+        let lengths: Vec<usize> = series.sequences.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [2, 1]);
     }
 }

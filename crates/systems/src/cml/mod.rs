@@ -4,6 +4,7 @@
 //! [`CmlSystem`], [`summarize`] gives the figures and [`plots`] the pictures.
 
 mod estimates;
+mod external;
 mod figures;
 mod odometry;
 mod params;

@@ -1,11 +1,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaDescriptorParams};
+use wayfix_slam_ekf::ExternalParams;
 
 use crate::system::VELOCITY_TIMEOUT;
 
 /// Parameters of `wayfix run cml`. Keys that a parameter file omits keep their defaults.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
@@ -18,6 +19,8 @@ pub struct CmlParams {
     pub start_uncertainty: PoseSigmas,
     /// Synthetic odometry for a folder of frames, which has none.
     pub synthetic_odometry: SyntheticOdometry,
+    /// Sensors of the pose that do not use the map: positions of the robot, headings, poses. Measurements outside the chi-squared gate of 0.9999 are rejected.
+    pub external: ExternalParams,
     /// Parameters of the panorama descriptors.
     pub panorama_descriptor: PanoramaDescriptorParams,
     /// The localizer.
@@ -32,6 +35,7 @@ impl Default for CmlParams {
             taught_pose_uncertainty: PoseSigmas::default(),
             start_uncertainty: PoseSigmas::default(),
             synthetic_odometry: SyntheticOdometry::default(),
+            external: ExternalParams::default(),
             panorama_descriptor: PanoramaDescriptorParams::default(),
             localizer: LocalizerParams::default(),
         }

@@ -9,7 +9,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
-use super::{CmlParams, PoseSigmas, ViewDescriptorReader};
+use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
 use crate::system::{
     EventCounts, HeldVelocity, IncrementPlausibilityCheck, Stopwatch, System, check_velocity, warn_of_lag,
 };
@@ -22,7 +22,7 @@ pub type PanoramaMap = AppearanceMap<PanoramaDescriptor, AppearanceIndex<Panoram
 /// The localizer, fed with the records of a log.
 pub struct CmlSystem {
     reader: ViewDescriptorReader,
-    localizer: PanoramaLocalizer,
+    pub(super) localizer: PanoramaLocalizer,
     velocity: HeldVelocity,
     velocity_timeout: f64,
     plausible: IncrementPlausibilityCheck,
@@ -35,7 +35,8 @@ pub struct CmlSystem {
     /// Turn since the view before, estimated from the views alone, rad.
     seen_turns: Vec<Option<f64>>,
     frames: Vec<CmlViewResult>,
-    events: EventCounts,
+    pub(super) external: ExternalSensors,
+    pub(super) events: EventCounts,
 }
 
 /// Result of one view.
@@ -77,6 +78,7 @@ impl CmlSystem {
             last_view: None,
             seen_turns: Vec::new(),
             frames: Vec::new(),
+            external: ExternalSensors::new(params.external.clone()),
             events: EventCounts::default(),
         })
     }
@@ -133,7 +135,7 @@ impl CmlSystem {
         Ok(self.localizer.restart(start)?)
     }
 
-    fn move_by(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
+    pub(super) fn move_by(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
         self.localizer.predict(increment).map_err(|error| error.to_string())?;
         self.odometry = self.odometry.map(|pose| pose.compose(increment));
         self.moved = self.moved.compose(increment);
@@ -141,7 +143,7 @@ impl CmlSystem {
     }
 
     /// Predicts the pose to `stamp` with the held velocity.
-    fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
+    pub(super) fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
         let Some(held) = self.velocity.motion_until(stamp, self.velocity_timeout) else { return Ok(()) };
         if held.unknown_seconds > 0.0 {
             let hold = self.velocity_timeout;
@@ -163,16 +165,7 @@ impl CmlSystem {
         let stopwatch = Stopwatch::start();
         let outcome = self.localizer.update(view).map_err(|error| error.to_string())?;
         let step = describing + stopwatch.elapsed();
-        for event in &outcome.events {
-            self.events.count(match event {
-                LocalizerEvent::NewReference(_) => "new_reference",
-                LocalizerEvent::Forgotten(_) => "reference_forgotten",
-                LocalizerEvent::Lost => "pose_lost",
-                LocalizerEvent::Found => "pose_found",
-                LocalizerEvent::Relocated => "pose_relocated",
-                _ => "other",
-            });
-        }
+        outcome.events.iter().for_each(|event| self.count(event));
         self.frames.push(CmlViewResult {
             stamp,
             pose: self.localizer.estimate().cloned(),
@@ -184,6 +177,17 @@ impl CmlSystem {
             step,
         });
         Ok(())
+    }
+
+    pub(super) fn count(&mut self, event: &LocalizerEvent) {
+        self.events.count(match event {
+            LocalizerEvent::NewReference(_) => "new_reference",
+            LocalizerEvent::Forgotten(_) => "reference_forgotten",
+            LocalizerEvent::Lost => "pose_lost",
+            LocalizerEvent::Found => "pose_found",
+            LocalizerEvent::Relocated => "pose_relocated",
+            _ => "other",
+        });
     }
 
     fn nearest(&self, view: &PanoramaDescriptor) -> Option<(f64, [f64; 2])> {
@@ -210,7 +214,7 @@ impl System for CmlSystem {
             RecordData::OdometryIncrement(increment) => {
                 self.plausible.check(record.stamp, increment)?;
                 self.advance_to(record.stamp)?;
-                self.move_by(increment)
+                self.move_through(record.stamp, increment)
             }
             RecordData::Velocity(velocity) => {
                 check_velocity(*velocity)?;
@@ -221,8 +225,14 @@ impl System for CmlSystem {
                 self.advance_to(record.stamp)?;
                 self.see(record.stamp, image)
             }
+            RecordData::PoseMeasurement(measured) => self.take_measurement(record.stamp, measured),
             _ => Ok(()),
         }
+    }
+
+    fn finish(&mut self) -> Result<(), String> {
+        self.finish_measurements();
+        Ok(())
     }
 
     fn events(&mut self) -> &mut EventCounts {

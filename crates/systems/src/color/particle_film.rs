@@ -1,4 +1,7 @@
+use std::sync::Arc;
+
 use anyhow::Result;
+use wayfix_color_model::LightingFilter;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{EncodedImage, Stamp};
 
@@ -54,7 +57,7 @@ impl ParticleSnapshots {
         }
     }
 
-    /// The colours of the active light over time, and the film of the particles. [Schulz & Fox 2004, Fig. 5]
+    /// The colours of each light's prior beside those of the active light over time, and the film of the particles. [Schulz & Fox 2004, Fig. 5]
     ///
     /// # Errors
     /// Returns an error if a picture cannot be drawn.
@@ -63,11 +66,13 @@ impl ParticleSnapshots {
             let (active, ellipses) = &moment.light;
             (format!("{:.1} s, light {active}, V", run.seconds(moment.stamp)), ellipses.clone())
         };
+        let mut groups = priors(run)?;
+        groups.extend(self.kept.iter().flatten().map(moment));
         let colors = CovarianceEllipsesPlot {
-            title: "Colours of the active light over time (1σ in U and V)".to_owned(),
+            title: "Colours of the priors, and of the active light over time (1σ in U and V)".to_owned(),
             x_label: "U".to_owned(),
             sigmas: 1.0,
-            groups: self.kept.iter().flatten().map(moment).collect(),
+            groups,
         };
         Ok([colors.draw()?, self.film(run)?])
     }
@@ -97,6 +102,15 @@ impl ParticleSnapshots {
         };
         Ok(film.draw()?)
     }
+}
+
+/// The colours of each light before the run. [Schulz & Fox 2004, Fig. 5a, b]
+fn priors(run: &ColorRun) -> Result<Vec<(String, Vec<NamedEllipse>)>> {
+    let prior = |(number, light): (usize, &Arc<LightingFilter>)| {
+        let light = LightingFilter::new(light.prior().clone(), *light.params())?;
+        Ok((format!("prior of light {number}, V"), uv_ellipses(run.system.map(), &light)))
+    };
+    run.system.light().members().iter().enumerate().map(prior).collect()
 }
 
 /// The part of the run of a camera frame; a log may have more frames than announced.

@@ -55,7 +55,7 @@ pub fn run(
         system.add_anchor(id, landmark)?;
     }
     let seen = (association == AssociationRule::Known).then(|| identities(records));
-    system.estimator.filter.add_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
+    system.add_given_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
     drive_through(system, truth, records, observe)
 }
 

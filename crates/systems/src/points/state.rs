@@ -72,7 +72,8 @@ impl PointSystem {
     /// # Errors
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(params: PointSlamParams, saved: SavedPointMap) -> Result<Self, SavedMapError> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved;
+        let SlamState { filter, association, next_id, taken_until, dead_reckoning, external, front_end } =
+            saved;
         let PointFrontEndState { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
@@ -89,6 +90,6 @@ impl PointSystem {
             return Err(SlamError::NotFinite { what: "saved motion" }.into());
         }
         (system.front_end.odometry, system.front_end.motion) = (odometry, motion);
-        system.resumed(filter, next_id, taken_until)
+        system.resumed(filter, next_id, taken_until, external)
     }
 }

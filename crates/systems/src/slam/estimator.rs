@@ -1,4 +1,4 @@
-use std::time::Duration;
+use std::{collections::BTreeSet, time::Duration};
 
 use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allocator};
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
@@ -43,6 +43,8 @@ where
     pub(crate) dead_reckoning: Pose2<f64>,
     pub(super) stamped_estimates: Vec<StampedEstimate>,
     pub(crate) events: EventCounts,
+    /// Given anchors that no observation has matched.
+    pub(super) unseen_anchors: BTreeSet<LandmarkId>,
     /// Computing time since the last estimate.
     pub(crate) step: Duration,
 }
@@ -65,6 +67,7 @@ where
             dead_reckoning: start,
             stamped_estimates: Vec::new(),
             events: EventCounts::default(),
+            unseen_anchors: BTreeSet::new(),
             step: Duration::ZERO,
         }
     }
@@ -105,6 +108,10 @@ where
     ) -> Result<UpdateReport<M::Measurement>, String> {
         let report = self.filter.update(observations, &mut self.association);
         let report = report.map_err(|error| error.to_string())?;
+        if !self.unseen_anchors.is_empty() {
+            let seen = seen_landmarks(&report);
+            self.unseen_anchors.retain(|anchor| !seen.contains(anchor));
+        }
         if let Some(recorder) = &mut self.observability {
             recorder.record(&self.filter, &seen_landmarks(&report));
         }

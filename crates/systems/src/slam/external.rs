@@ -1,5 +1,6 @@
 use nalgebra::{DefaultAllocator, Matrix3, Vector2};
-use wayfix_estimation_traits::{Angle, Pose2};
+use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::{Angle, LieGroup, Pose2};
 use wayfix_sensor_log::{MeasuredQuantity, PoseMeasurement};
 use wayfix_slam_ekf::{
     ExternalError, ExternalParams, HeadingSensor, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim,
@@ -7,12 +8,24 @@ use wayfix_slam_ekf::{
 };
 
 use super::SlamEstimator;
+use crate::system::HeadingSignTest;
+
+/// What EKF-SLAM remembers of external sensors between two records.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ExternalState {
+    /// Stamp of the last increment, nanoseconds; measurements after it wait.
+    pub last_increment: Option<u64>,
+    /// Measurements that wait for the increment that leads beyond them: nanoseconds, and what was measured.
+    pub waiting: Vec<(u64, MapMeasurement)>,
+    /// Logarithm of the odds that the compass is mirrored.
+    pub mirrored_compass_log_odds: f64,
+}
 
 /// A measured pose in the frame of the map.
 ///
 /// # Errors
 /// Returns an error if the frame, the datum or the covariance is unknown.
-pub(super) fn in_map(
+pub(crate) fn in_map(
     measured: &PoseMeasurement,
     params: &ExternalParams,
     antenna: Vector2<f64>,
@@ -43,13 +56,22 @@ impl<M: LandmarkModel<Robot: PlanarRobot>> SlamEstimator<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Corrects robot and map by a measurement that was made after a motion from the filter's state. An outlier is counted.
+    /// Corrects robot and map by a measurement that was made after a motion from the filter's state. An outlier is counted, and a heading as long as its sign
+    /// is unknown or wrong.
     pub(super) fn update_moved(
         &mut self,
         measurement: &MapMeasurement,
         motion: Pose2<f64>,
         covariance: Matrix3<f64>,
+        heading_sign: &mut HeadingSignTest,
     ) -> Result<(), String> {
+        if let MapMeasurement::Heading(sensor, measured) = measurement {
+            let predicted = self.filter.robot().pose().compose(&motion).heading();
+            let variance = self.filter.robot_covariance()[(2, 2)] + covariance.m33 + sensor.variance;
+            if !heading_sign.is_admitted(measured.radians(), predicted, variance, &mut self.events) {
+                return Ok(());
+            }
+        }
         match self.filter.update_moved(measurement, motion, covariance) {
             Ok(innovation) => {
                 self.record_robot(&innovation.jacobian, &innovation.covariance);

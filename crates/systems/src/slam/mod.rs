@@ -22,6 +22,8 @@ pub use association::AssociationRule;
 pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
 pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
+pub use external::ExternalState;
+pub(crate) use external::in_map;
 pub(crate) use figures::{path_metrics, summary, timings};
 pub(crate) use follower::{SlamFollower, carried};
 pub use follower::{SmoothedRun, Smoothing};

@@ -3,7 +3,11 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
-use super::{FrontEnd, SlamSystem, SmoothedRun, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
+use super::{
+    FrontEnd, SlamEstimator, SlamSystem, SmoothedRun, StampedEstimate,
+    start::{warn_of_retired_landmarks, warn_of_unseen_anchors},
+    warn_of_an_empty_map, warn_of_no_overlap,
+};
 use crate::system::{EventCounts, RunStep, System, drive};
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
@@ -43,6 +47,9 @@ where
         warn_of_no_overlap(self.system.events(), &self.truth, estimated);
         let n_landmarks = self.system.filter().n_landmarks();
         warn_of_an_empty_map(self.system.events(), n_landmarks);
+        let SlamEstimator { filter, events, unseen_anchors, .. } = &mut self.system.estimator;
+        warn_of_unseen_anchors(events, unseen_anchors);
+        warn_of_retired_landmarks(events, filter.n_retired());
         self
     }
 

@@ -1,15 +1,18 @@
+use std::collections::BTreeSet;
+
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{PoseMeasurement, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement, MeasurementDim, RobotDim, SlamAlloc,
-    SlamError, SlamSnapshot, observability::ObservabilityRecorder,
+    AnchorError, AnchorParams, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement,
+    MeasurementDim, RobotDim, SlamAlloc, SlamError, SlamSnapshot, observability::ObservabilityRecorder,
 };
 
 use super::{
-    AssociationRule, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate, external::in_map,
+    AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
+    external::in_map,
 };
-use crate::system::{EventCounts, System};
+use crate::system::{EventCounts, HeadingSignTest, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
 pub struct SlamSystem<F: FrontEnd>
@@ -25,6 +28,7 @@ where
     last_increment: Option<Stamp>,
     /// Measurements of the pose that wait for the increment that leads beyond them.
     waiting: Vec<(Stamp, MapMeasurement)>,
+    heading_sign: HeadingSignTest,
 }
 
 /// The identity of the first anchor of a map without identities; association gives smaller ones.
@@ -42,8 +46,15 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     pub(crate) fn new(front_end: F, estimator: SlamEstimator<F::Model>) -> Self {
-        let (taken_until, resumed_at) = (Stamp::default(), None);
-        Self { front_end, estimator, taken_until, resumed_at, last_increment: None, waiting: Vec::new() }
+        Self {
+            front_end,
+            estimator,
+            taken_until: Stamp::default(),
+            resumed_at: None,
+            last_increment: None,
+            waiting: Vec::new(),
+            heading_sign: HeadingSignTest::default(),
+        }
     }
 
     /// The system with a saved map; the front end has its saved state already.
@@ -52,13 +63,24 @@ where
         filter: SlamSnapshot<<F::Model as LandmarkModel>::Robot, <F::Model as LandmarkModel>::Landmark>,
         next_id: Option<u32>,
         taken_until: u64,
+        external: ExternalState,
     ) -> Result<Self, SavedMapError> {
+        let ExternalState { last_increment, waiting, mirrored_compass_log_odds } = external;
+        let not_finite = |_| SlamError::NotFinite { what: "saved odds of a mirrored compass" };
+        let heading_sign = HeadingSignTest::from_log_odds(mirrored_compass_log_odds).map_err(not_finite)?;
+        let stamp = Stamp::from_nanoseconds;
         let Self { front_end, mut estimator, .. } = self;
         let (model, params) = (estimator.filter.model().clone(), *estimator.filter.params());
         estimator.filter = EkfSlam::resume(model, params, filter)?;
         estimator.association = estimator.association.numbering_from(next_id);
-        let taken_until = Stamp::from_nanoseconds(taken_until);
-        Ok(Self { taken_until, resumed_at: Some(taken_until), ..Self::new(front_end, estimator) })
+        Ok(Self {
+            taken_until: stamp(taken_until),
+            resumed_at: Some(stamp(taken_until)),
+            last_increment: last_increment.map(stamp),
+            waiting: waiting.into_iter().map(|(since, measured)| (stamp(since), measured)).collect(),
+            heading_sign,
+            ..Self::new(front_end, estimator)
+        })
     }
 
     /// Adds a landmark whose place is known.
@@ -68,6 +90,18 @@ where
         landmark: <F::Model as LandmarkModel>::Landmark,
     ) -> Result<(), SlamError> {
         self.estimator.filter.add_anchor(id, landmark)
+    }
+
+    /// Adds the landmarks that the user knows; `seen` are the identities that the sensor reads, if it does.
+    pub(crate) fn add_given_anchors<P: Copy>(
+        &mut self,
+        anchors: &[AnchorParams<P>],
+        seen: Option<&BTreeSet<u32>>,
+        landmark: impl Fn(P) -> <F::Model as LandmarkModel>::Landmark,
+    ) -> Result<(), AnchorError> {
+        self.estimator.filter.add_anchors(anchors, seen, landmark)?;
+        self.estimator.unseen_anchors = anchors.iter().map(|anchor| LandmarkId(anchor.id)).collect();
+        Ok(())
     }
 
     /// Takes a measurement of the pose now, or after the increment that leads beyond it.
@@ -90,7 +124,7 @@ where
         let begin = self.last_increment.replace(end).unwrap_or(end);
         for (stamp, measurement) in std::mem::take(&mut self.waiting) {
             let share = end.seconds_since(stamp) / end.seconds_since(begin).max(f64::MIN_POSITIVE);
-            let back = Pose2::exp(&(increment.log() * -share.min(1.0)));
+            let back = Pose2::exp(&(increment.log() * -share.clamp(0.0, 1.0)));
             if let Err(reason) = self.measure(end, &measurement, &back) {
                 self.estimator.events.refuse("record_refused", format!("measured pose of {stamp}: {reason}"));
             }
@@ -109,17 +143,27 @@ where
             return Ok(());
         };
         let carry = rest.inverse().adjoint();
-        self.estimator.update_moved(measurement, motion.compose(rest), carry * covariance * carry.transpose())
+        let covariance = carry * covariance * carry.transpose();
+        let motion = motion.compose(rest);
+        self.estimator.update_moved(measurement, motion, covariance, &mut self.heading_sign)
     }
 
     /// All that is needed to go on from here.
     pub fn save(&self) -> StateOf<F> {
+        let taken_until = self.front_end.settled_until(self.taken_until);
+        // Later ones are read again.
+        let waiting = self.waiting.iter().filter(|(stamp, _)| *stamp <= taken_until);
         SlamState {
             filter: self.estimator.filter.snapshot(),
             association: self.association(),
             next_id: self.estimator.association.next_id(),
-            taken_until: self.front_end.settled_until(self.taken_until).nanoseconds(),
+            taken_until: taken_until.nanoseconds(),
             dead_reckoning: self.estimator.dead_reckoning,
+            external: ExternalState {
+                last_increment: self.last_increment.map(Stamp::nanoseconds),
+                waiting: waiting.map(|(stamp, measured)| (stamp.nanoseconds(), *measured)).collect(),
+                mirrored_compass_log_odds: self.heading_sign.log_odds(),
+            },
             front_end: self.front_end.state(),
         }
     }
@@ -168,6 +212,7 @@ where
     }
     fn finish(&mut self) -> Result<(), String> {
         self.take_waiting(self.taken_until, &Pose2::identity());
+        self.heading_sign.warn_if_mirrored(&mut self.estimator.events);
         self.front_end.finish(&mut self.estimator)
     }
     fn events(&mut self) -> &mut EventCounts {

@@ -3,6 +3,7 @@
 mod drive;
 mod estimate_recorder;
 mod events;
+mod heading_sign;
 mod held_velocity;
 mod known_start;
 mod laser;
@@ -15,6 +16,7 @@ mod robot_drawing;
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use events::{EventCounts, RefusedRecord};
+pub(crate) use heading_sign::HeadingSignTest;
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;

@@ -43,6 +43,20 @@ pub enum TrackSystemError {
         "no frame that could be used has a true box: say with --init where the target is in the first one"
     )]
     NoStart,
+    /// The detector has found no head.
+    #[error("no head was detected in {n_frames} frames")]
+    NoHead {
+        /// Frames in which it was searched.
+        n_frames: u64,
+    },
+    /// Pictures with true boxes to learn a detector from have no such picture, or bad ones.
+    #[error("cannot learn a head from {}", path.display())]
+    Examples {
+        /// Folder of the pictures.
+        path: PathBuf,
+        /// The detector's error.
+        source: TrackingError,
+    },
     /// No frame is usable.
     #[error("no frame could be used{because}")]
     NoFrame {

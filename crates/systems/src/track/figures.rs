@@ -28,6 +28,10 @@ pub fn summarize(run: &mut TrackRun) -> ReportRun {
         Metric::new("n_lost", totals.n_lost as f64, ""),
         Metric::new("n_frames_without_estimate", totals.n_frames_without_estimate as f64, ""),
     ]);
+    if let Some((frame, iou)) = run.system.detected() {
+        metrics.push(Metric::new("n_frames_until_detection", frame as f64, ""));
+        metrics.extend(iou.map(|iou| Metric::new("first_box_iou", iou, "")));
+    }
     let ms = |time: Duration| 1e3 * time.as_secs_f64();
     let timings = vec![
         Metric::new("frame_mean_ms", ms(totals.time) / totals.n_steps.max(1) as f64, "ms"),

@@ -19,6 +19,7 @@
 mod error;
 mod figures;
 mod frame_tracker;
+mod learn_head;
 mod method;
 mod output;
 mod params;
@@ -32,6 +33,7 @@ mod truth;
 pub use error::TrackSystemError;
 pub use figures::summarize;
 pub use frame_tracker::{FrameTracker, TargetColorDistribution};
+pub use learn_head::learn_head;
 pub use method::TrackingMethod;
 pub use output::estimates::TrackEstimateRecorder;
 pub use output::plots::plots;

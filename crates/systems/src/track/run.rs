@@ -38,6 +38,10 @@ pub fn run(
     let unreadable = log.report().problems.get(&RowProblemKind::UnreadableImage).copied().unwrap_or(0);
     let shown = system.events().get("frame_unreadable");
     system.pass_over(system.n_frames() + unreadable.saturating_sub(shown) as usize);
+    let n_searched = system.events().get("head_not_detected");
+    if !system.has_begun() && n_searched > 0 {
+        return Err(TrackSystemError::NoHead { n_frames: n_searched });
+    }
     if !system.has_begun() {
         let first = system.events().refusals().first().map(|first| format!(": {first}"));
         return Err(match first {

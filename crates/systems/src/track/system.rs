@@ -2,7 +2,9 @@ use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
-use wayfix_visual_tracking::{RgbImage, TargetEstimate, TrackStatus};
+use wayfix_visual_tracking::{
+    BoundingBox, HeadDetector, RgbImage, TargetEstimate, TrackStatus, TrackingError,
+};
 
 use super::{
     BoxScore, FrameTracker, InitialTargetRegion, LostStatusScore, TargetColorDistribution, TargetTruth,
@@ -25,6 +27,8 @@ pub struct TrackSystem {
     score: BoxScore,
     status_score: LostStatusScore,
     totals: Totals,
+    /// The first frame with an estimate, if a detector found it, and its overlap with the true box.
+    detected: Option<(usize, Option<f64>)>,
     events: EventCounts,
 }
 
@@ -37,6 +41,8 @@ pub struct TrackerConfig {
     pub params: TrackParams,
     /// Position of the target in the first frame; `None` uses the first true box.
     pub init: Option<InitialTargetRegion>,
+    /// Finds a head that the tracker starts with, in the first frame that shows one; `init` and the truth then start nothing.
+    pub detector: Option<HeadDetector>,
     /// The true boxes.
     pub truth: TrueBoxes,
     /// Frame rate of a folder, in Hz. It gives the frame number from the stamp; without it, frames are counted.
@@ -92,6 +98,7 @@ impl TrackSystem {
             score: BoxScore::default(),
             status_score: LostStatusScore::default(),
             totals: Totals::default(),
+            detected: None,
             events,
         }
     }
@@ -119,6 +126,10 @@ impl TrackSystem {
     /// Number of frames so far, including unreadable ones.
     pub fn n_frames(&self) -> usize {
         self.next_index
+    }
+
+    pub(super) fn detected(&self) -> Option<(usize, Option<f64>)> {
+        self.detected
     }
 
     pub(super) fn totals(&self) -> &Totals {
@@ -163,7 +174,8 @@ impl TrackSystem {
             }
             Ok(None) => {
                 self.without_estimate();
-                self.events.count("record_before_start");
+                let detects = self.setup.detector.is_some();
+                self.events.count(if detects { "head_not_detected" } else { "record_before_start" });
                 Ok(())
             }
             Err(reason) => {
@@ -191,14 +203,19 @@ impl TrackSystem {
             let target = tracker.track_frame(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
-        let first_true_box = || self.setup.truth.at(self.next_index).target().map(InitialTargetRegion::Box);
-        let Some(start) = self.setup.init.clone().or_else(first_true_box) else {
-            return Ok(None);
+        let true_box = self.setup.truth.at(self.next_index).target();
+        let start = match &self.setup.detector {
+            Some(detector) => detected(detector, &picture).map_err(|error| error.to_string())?,
+            None => self.setup.init.clone().or(true_box.map(InitialTargetRegion::Box)),
         };
+        let Some(start) = start else { return Ok(None) };
         let begun = self.setup.method.begin(&self.setup.params, &picture, &start);
         match begun.and_then(|tracker| Ok((tracker, start.bounding_box()?))) {
             Ok((tracker, bounding_box)) => {
                 self.tracker = Some(tracker);
+                if self.setup.detector.is_some() {
+                    self.detected = Some((self.next_index, true_box.map(|truth| bounding_box.iou(&truth))));
+                }
                 let (outline, status) = (Vec::new(), TrackStatus::Tracked);
                 let target = TargetEstimate { bounding_box, outline, status, quality: 1.0 };
                 Ok(Some((picture, target, Duration::ZERO)))
@@ -245,6 +262,16 @@ impl TrackSystem {
         self.next_index += 1;
         self.last = Some(TrackFrameResult { index, stamp, picture, target, truth, iou, colors, step });
     }
+}
+
+/// The head that a detector finds in a picture, of any width from the smallest that a tracker can follow to the picture's.
+fn detected(
+    detector: &HeadDetector,
+    picture: &RgbImage,
+) -> Result<Option<InitialTargetRegion>, TrackingError> {
+    let most = f64::from(picture.width().min(picture.height())).max(HeadDetector::MIN_WIDTH);
+    let found: Option<BoundingBox> = detector.detect(picture, HeadDetector::MIN_WIDTH..=most)?;
+    Ok(found.map(InitialTargetRegion::Box))
 }
 
 impl System for TrackSystem {

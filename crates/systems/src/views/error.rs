@@ -68,6 +68,28 @@ pub enum ViewsError {
         /// Minimum number for both.
         min: usize,
     },
+    /// Places of the grid have no learned picture.
+    #[error(
+        "{n_without} of {n_places} places have no picture: each column and row up to the largest needs one"
+    )]
+    PlacesWithoutPicture {
+        /// Places without one.
+        n_without: usize,
+        /// All places.
+        n_places: usize,
+    },
+    /// A logged drive has no move between two places of the grid.
+    #[error(
+        "none of {n_rows} rows tells a move between two places of a grid of {columns} × {rows}: dx, dy, column, row"
+    )]
+    NoMoves {
+        /// Rows of the table.
+        n_rows: usize,
+        /// Columns of the grid.
+        columns: usize,
+        /// Rows of the grid.
+        rows: usize,
+    },
     /// A scene cannot be composed or rendered.
     #[error(transparent)]
     Scenery(#[from] SimulationError),

@@ -11,9 +11,9 @@ use super::{
 use crate::system::EstimateWriter;
 
 /// Topic of the belief, as an image of the places.
-const BELIEF: &str = "/estimate/belief";
+pub(super) const BELIEF: &str = "/estimate/belief";
 /// Assumed duration of a move, since the log has no time.
-const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
+pub(super) const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 
 /// Shows viewers the drive that was uncertain for longest. Each move shows the scene with the current, the most probable and the goal view,
 /// and the belief over the places.

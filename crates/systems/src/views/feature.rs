@@ -2,7 +2,7 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_condensation::{
     ColorMeanStdDescriptor, ConcatenatedDescriptor, DominantGrayCriterion, DominantGraysDescriptor,
-    Fft6Descriptor, GlobalDescriptor,
+    Fft6Descriptor, GlobalDescriptor, IntensityRegionsDescriptor,
 };
 
 /// Feature measured in a view. [Kasprzak & Szynkiewicz, Sec. 3]
@@ -15,6 +15,8 @@ pub enum DescriptorKind {
     Fft6,
     /// The three dominant grey values and their shares.
     Hist6,
+    /// The grey values and shares of `hist6`, and where they are: mass centre and box of each.
+    Regions,
     /// All eighteen numbers of the three features.
     Joined,
 }
@@ -22,8 +24,8 @@ pub enum DescriptorKind {
 impl DescriptorKind {
     /// The three features of the paper.
     pub const OF_THE_PAPER: [Self; 3] = [Self::MeanVar, Self::Fft6, Self::Hist6];
-    /// These three, and their concatenation.
-    pub const ALL: [Self; 4] = [Self::MeanVar, Self::Fft6, Self::Hist6, Self::Joined];
+    /// These three, the regions of the dominant grey values, and the three concatenated.
+    pub const ALL: [Self; 5] = [Self::MeanVar, Self::Fft6, Self::Hist6, Self::Regions, Self::Joined];
 
     /// Its name in figures.
     pub fn name(self) -> &'static str {
@@ -31,6 +33,7 @@ impl DescriptorKind {
             Self::MeanVar => "mean_std",
             Self::Fft6 => "fourier6",
             Self::Hist6 => "dominant_grays",
+            Self::Regions => "intensity_regions",
             Self::Joined => "joined",
         }
     }
@@ -41,6 +44,7 @@ impl DescriptorKind {
             Self::MeanVar => "MeanVar",
             Self::Fft6 => "FFT6",
             Self::Hist6 => "Hist6",
+            Self::Regions => "Hist6 with positions",
             Self::Joined => "all three joined",
         }
     }
@@ -51,6 +55,7 @@ impl DescriptorKind {
             Self::MeanVar => Box::new(ColorMeanStdDescriptor),
             Self::Fft6 => Box::new(Fft6Descriptor),
             Self::Hist6 => Box::new(DominantGraysDescriptor { dominance }),
+            Self::Regions => Box::new(IntensityRegionsDescriptor { dominance }),
             Self::Joined => Box::new(ConcatenatedDescriptor::new(
                 Self::OF_THE_PAPER.into_iter().map(|part| part.feature(dominance)).collect(),
             )),

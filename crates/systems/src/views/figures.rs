@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use wayfix_condensation::{DiscreteStateSpace, NavigationOutcome};
+use wayfix_condensation::{DiscreteStateSpace, LearnedMotion, NavigationOutcome};
 
 use super::{ViewTrial, ViewsRun};
 use wayfix_evaluation::{
@@ -33,6 +33,9 @@ pub fn summarize(run: &ViewsRun) -> ReportRun {
         Metric::new("n_trials_certain_of_place", certain.len() as f64, ""),
         Metric::new("n_places", run.system.views().grid().n_states() as f64, ""),
     ]);
+    if let Some(motion) = run.system.motion() {
+        metrics.extend(motion_metrics(motion));
+    }
     let n_updates: usize = trials.iter().map(|trial| trial.belief_in_truth.len()).sum();
     let timings = vec![
         Metric::new("learning_time_ms", 1e3 * run.learning.as_secs_f64(), "ms"),
@@ -55,6 +58,16 @@ pub fn summarize(run: &ViewsRun) -> ReportRun {
         notes: failures(trials).into_iter().collect(),
         ..ReportRun::default()
     }
+}
+
+/// What was learned from logged moves.
+pub(super) fn motion_metrics(motion: &LearnedMotion) -> [Metric; 3] {
+    let [columns, rows] = motion.diffusion_sigmas();
+    [
+        Metric::new("n_logged_moves", motion.n_moves() as f64, ""),
+        Metric::new("diffusion_sigma_columns", columns, "places"),
+        Metric::new("diffusion_sigma_rows", rows, "places"),
+    ]
 }
 
 /// Whether a trial ended in one of the eight places around its goal.

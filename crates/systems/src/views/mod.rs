@@ -2,7 +2,7 @@
 //!
 //! A [`ViewSystem`] learns one image of a scene and drives in another image of it, taken later. [`run`] makes many drives between random
 //! places, [`summarize`] gives their figures and [`plots`] shows them.
-//! [`composed_scene_pair`] makes scenes that need no file. [`p_value_metrics`] and
+//! [`LoggedViews`] localizes a logged drive. [`composed_scene_pair`] makes scenes that need no file. [`p_value_metrics`] and
 //! [`compare_choices`] compute further metrics.
 //!
 //! ```
@@ -25,6 +25,8 @@ mod error;
 mod estimates;
 mod feature;
 mod figures;
+mod logged;
+mod logged_plots;
 mod normalization;
 mod params;
 mod plots;
@@ -38,10 +40,12 @@ pub use error::ViewsError;
 pub use estimates::draw_drive;
 pub use feature::DescriptorKind;
 pub use figures::summarize;
+pub use logged::{LoggedView, LoggedViews};
+pub use logged_plots::{draw_logged, logged_plots};
 pub use normalization::LightNormalization;
 pub use params::ViewsParams;
 pub use plots::shade;
-pub use plots::{belief_film, plots};
+pub use plots::{belief_film, feature_plot, plots};
 pub use run::{ViewsRun, run};
 pub use scenes::composed::composed_scene_pair;
 pub use scenes::real_scene::RealSceneTransform;

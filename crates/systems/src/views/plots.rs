@@ -1,10 +1,10 @@
 use std::cmp::Reverse;
 
 use anyhow::Result;
-use wayfix_condensation::{PositionGrid, RgbImage};
+use wayfix_condensation::{PositionGrid, RgbImage, StateDescriptorTable};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
-use super::{ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
+use super::{DescriptorKind, ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
 use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 
 /// Moves after which the belief is shown, besides the last.
@@ -12,7 +12,7 @@ const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
 /// Film frames per row; there are two rows.
 const FRAMES_A_ROW: usize = 3;
 /// Pixels per place of a belief map.
-const CELL: usize = 12;
+pub(super) const CELL: usize = 12;
 pub(super) const TRUTH: [u8; 3] = [214, 39, 40];
 pub(super) const GOAL: [u8; 3] = [24, 140, 60];
 pub(super) const BEST: [u8; 3] = [240, 160, 0];
@@ -27,7 +27,27 @@ pub fn plots(run: &ViewsRun, learned: &RgbImage, real: &RgbImage, seed: u64) -> 
         scenes(learned, real)?,
         belief_film(&run.system, seed, slowest(&run.trials))?,
         certainty(&run.trials).draw()?,
+        feature_plot(run.system.learned(), run.system.feature())?,
     ])
+}
+
+/// The first three components of the feature over the places. [Kasprzak & Szynkiewicz, Fig. 5]
+///
+/// # Errors
+/// Returns an error if it cannot be drawn.
+pub fn feature_plot(learned: &StateDescriptorTable, feature: DescriptorKind) -> Result<SvgPlot> {
+    let component = |k: usize| {
+        let points = learned.rows().enumerate().map(|(state, row)| (state as f64, row[k])).collect();
+        PlotSeries::new(format!("component {}", k + 1), points)
+    };
+    let plot = LinePlot {
+        title: format!("The first three components of {} over the places", feature.title()),
+        x_label: "place, row by row".to_owned(),
+        y_label: "feature".to_owned(),
+        series: (0..learned.n_components().min(3)).map(component).collect(),
+        ..LinePlot::default()
+    };
+    Ok(plot.draw()?)
 }
 
 /// Belief over the places after 0, 1, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
@@ -76,7 +96,7 @@ pub(super) fn belief_image(
 }
 
 /// One square per place, darker for larger belief. The marks of one place are nested, the last outermost.
-fn belief_map(grid: &PositionGrid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
+pub(super) fn belief_map(grid: &PositionGrid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
     let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let width = grid.columns() * CELL;
     let pixel = |i: usize| {

@@ -36,13 +36,28 @@ pub fn run(
 ) -> Result<ViewsRun, ViewsError> {
     let stopwatch = Stopwatch::start();
     let system = ViewSystem::learn(learned, real, setup, params)?;
-    let learning = stopwatch.elapsed();
-    let stopwatch = Stopwatch::start();
-    let trial = |index: u64| {
-        let trial = system.trial(seed, index, |_| {});
-        done();
-        trial
-    };
-    let trials = (0..n_trials).into_par_iter().map(trial).collect::<Result<Vec<_>, _>>()?;
-    Ok(ViewsRun { system, trials, learning, driving: stopwatch.elapsed() })
+    ViewsRun::drive(system, stopwatch.elapsed(), n_trials, seed, done)
+}
+
+impl ViewsRun {
+    /// Drives `n_trials` times, in parallel; calls `done` after each drive. `learning` is the time that learning took.
+    ///
+    /// # Errors
+    /// Returns [`ViewsError::Condensation`].
+    pub fn drive(
+        system: ViewSystem,
+        learning: Duration,
+        n_trials: u64,
+        seed: u64,
+        done: &(impl Fn() + Sync),
+    ) -> Result<Self, ViewsError> {
+        let stopwatch = Stopwatch::start();
+        let trial = |index: u64| {
+            let trial = system.trial(seed, index, |_| {});
+            done();
+            trial
+        };
+        let trials = (0..n_trials).into_par_iter().map(trial).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { system, trials, learning, driving: stopwatch.elapsed() })
+    }
 }

@@ -3,15 +3,16 @@ use std::{cell::Cell, sync::Arc};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
-    AppearanceModel, DiscreteStateSpace, GridMove, NavigationEnvironment, NavigationOutcome,
+    AppearanceModel, DiscreteStateSpace, GridMove, LearnedMotion, NavigationEnvironment, NavigationOutcome,
     NavigationReport, Navigator, PositionGrid, RgbImage, SceneViews, SlipProbabilities, StateDescriptorTable,
     ViewGrid, ViewLocalizer,
 };
+use wayfix_table_log::MoveTable;
 
-use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams};
+use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams, logged::learned_motion};
 
 /// Maximum product of places and lights; one update then takes about half a second.
-const MAX_HYPOTHESES: usize = 500_000;
+pub(super) const MAX_HYPOTHESES: usize = 500_000;
 
 /// First random stream of failed moves; lower streams are for starts, goals and choices.
 const SLIPS: u64 = 1 << 32;
@@ -34,7 +35,10 @@ pub struct ViewSystemConfig {
 pub struct ViewSystem {
     views: ViewGrid,
     appearance: Arc<AppearanceModel>,
+    learned: StateDescriptorTable,
     seen: StateDescriptorTable,
+    feature: DescriptorKind,
+    motion: Option<LearnedMotion>,
     navigator: Navigator<PositionGrid>,
     params: ViewsParams,
 }
@@ -99,8 +103,21 @@ impl ViewSystem {
         let appearance = Arc::new(AppearanceModel::learn(&source, &*feature, appearance_params)?);
         ViewLocalizer::new(Arc::clone(&appearance), params.localizer)?; // rejects invalid parameters before the first trial
         let seen = feature.extract_all(&setup.normalization.apply(real, learned)?, &views)?;
+        let learned = feature.extract_all(learned, &views)?;
         let navigator = Navigator::new(*views.grid(), params.navigator)?;
-        Ok(Self { views, appearance, seen, navigator, params: params.clone() })
+        let (feature, motion, params) = (setup.feature, None, params.clone());
+        Ok(Self { views, appearance, learned, seen, feature, motion, navigator, params })
+    }
+
+    /// The robot assumes that moves slip as they did in a logged drive, and not as `navigator.slip` says. [Kasprzak & Szynkiewicz, Eqs. 3–5]
+    ///
+    /// # Errors
+    /// Returns [`ViewsError::NoMoves`].
+    pub fn with_moves(self, moves: &MoveTable) -> Result<Self, ViewsError> {
+        let motion = learned_motion(self.views.grid(), moves)?;
+        let transitions = motion.transitions().to_vec();
+        let navigator = Navigator::with_transitions(*self.views.grid(), transitions, self.params.navigator)?;
+        Ok(Self { navigator, motion: Some(motion), ..self })
     }
 
     /// The grid of views.
@@ -111,6 +128,21 @@ impl ViewSystem {
     /// The learned appearance.
     pub fn appearance(&self) -> &AppearanceModel {
         &self.appearance
+    }
+
+    /// The features of every view of the learned scene.
+    pub fn learned(&self) -> &StateDescriptorTable {
+        &self.learned
+    }
+
+    /// The feature.
+    pub fn feature(&self) -> DescriptorKind {
+        self.feature
+    }
+
+    /// Transitions and diffusion, if they were learned from logged moves.
+    pub fn motion(&self) -> Option<&LearnedMotion> {
+        self.motion.as_ref()
     }
 
     /// The features of every view of the real scene.

@@ -57,7 +57,7 @@ pub fn run(
     let between = |[start, end]: [[f64; 2]; 2]| {
         truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
     };
-    system.estimator.filter.add_anchors(&params.anchors, None, between)?;
+    system.add_given_anchors(&params.anchors, None, between)?;
     drive_through(system, track, true_walls, records, observe)
 }
 

@@ -113,7 +113,15 @@ impl WallSystem {
         saved: SavedWallMap,
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end: state } = saved;
+        let SlamState {
+            filter,
+            association,
+            next_id,
+            taken_until,
+            dead_reckoning,
+            external,
+            front_end: state,
+        } = saved;
         check_association(asked, association)?;
         state.check()?;
         let laser_follows_log = params.laser_pose.is_none() && state.laser_follows_log;
@@ -127,6 +135,6 @@ impl WallSystem {
         front_end.odometry = state.odometry;
         (front_end.current_laser_mount, front_end.laser_follows_log) =
             (state.current_laser_mount, laser_follows_log);
-        Ok(system.resumed(filter, next_id, taken_until)?)
+        Ok(system.resumed(filter, next_id, taken_until, external)?)
     }
 }

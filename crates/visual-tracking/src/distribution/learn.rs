@@ -12,34 +12,41 @@ pub struct LearnedColorDynamics {
     pub dynamics: ColorDynamics,
     /// Covariance of the residuals of the dynamics, $`L Lᵀ`$.
     pub residual_covariance: SMatrix<f64, COLOR_DIM, COLOR_DIM>,
-    /// Number of steps in the training sequence.
+    /// Number of steps in the training sequences.
     pub n_steps: usize,
 }
 
 impl ColorDynamics {
-    /// Estimates $`A`$ and $`B`$ from the states of a training sequence by least squares:
+    /// Estimates $`A`$ and $`B`$ from the states of training sequences by least squares:
     /// $`\min_F \sum_t \| \mathbf x_t - F_x \mathbf x_{t-1} - F_v \dot{\mathbf x}_{t-1} \|^2 + κ \| F - F_0 \|^2`$, and $`L Lᵀ`$ is the
     /// covariance of the residuals. [Andrade-Cetto 2005, Sec. 3.3: "A and B are estimated a priori from a training sequence"]
     ///
     /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: a quantity constant in the training sequence then stays constant. It is
-    /// in units of the squared states; 0 is plain least squares and needs a sequence in which all 16 numbers vary. The angles of the
-    /// series must be accumulated from image to image ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
+    /// in units of the squared states; 0 is plain least squares and needs sequences in which all 16 numbers vary. The angles must be accumulated from
+    /// image to image ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
+    ///
+    /// Each sequence has one state for every image: a gap, such as a lost target, ends it. Three states give one step.
     ///
     /// # Errors
-    /// Returns [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
-    /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for a sequence that leaves something open.
-    pub fn learn(series: &[ColorStateVector], ridge: f64) -> Result<LearnedColorDynamics, TrackingError> {
+    /// Returns [`TrackingError::Empty`] with less than 16 steps (16 unknowns a row), [`TrackingError::NotFinite`], and
+    /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for sequences that leave something open.
+    pub fn learn(
+        sequences: &[impl AsRef<[ColorStateVector]>],
+        ridge: f64,
+    ) -> Result<LearnedColorDynamics, TrackingError> {
         crate::error::checked("ridge", ridge, ridge.is_finite() && ridge >= 0.0, "finite, not negative")?;
-        if series.len() < 2 + 2 * COLOR_DIM {
-            return Err(TrackingError::Empty { what: "training sequence of 18 states" });
+        let windows = || sequences.iter().flat_map(|sequence| sequence.as_ref().windows(3));
+        let n_steps = windows().count();
+        if n_steps < 2 * COLOR_DIM {
+            return Err(TrackingError::Empty { what: "training sequence of 16 steps" });
         }
-        for (index, state) in series.iter().enumerate() {
+        for (index, state) in sequences.iter().flat_map(AsRef::as_ref).enumerate() {
             if let Some(&value) = state.iter().find(|value| !value.is_finite() || value.abs() > 1e100) {
                 return Err(TrackingError::NotFinite { what: "colour state", index, value });
             }
         }
         // Residuals of constant velocity: their regression on the state is F - F_0.
-        let steps = || series.windows(3).map(|x| (regressor(&x[0], &x[1]), x[2] - (x[1] * 2.0 - x[0])));
+        let steps = || windows().map(|x| (regressor(&x[0], &x[1]), x[2] - (x[1] * 2.0 - x[0])));
         let mut gram = SMatrix::<f64, 16, 16>::identity() * ridge;
         let mut cross = SMatrix::<f64, 16, COLOR_DIM>::zeros();
         for (s, left) in steps() {
@@ -55,7 +62,6 @@ impl ColorDynamics {
             let residual = left - change * s;
             residual_covariance += residual * residual.transpose();
         }
-        let n_steps = series.len() - 2;
         // A row has 16 unknowns, which the residuals have lost.
         residual_covariance /= (n_steps.saturating_sub(2 * COLOR_DIM)).max(1) as f64;
         let from_value = Square::identity() + change.fixed_columns::<COLOR_DIM>(0);
@@ -127,7 +133,7 @@ mod tests {
     #[test]
     fn known_dynamics_are_recovered_within_the_sampling_error() {
         let n = 20_000;
-        let learned = ColorDynamics::learn(&series(n, 3), 0.0).unwrap();
+        let learned = ColorDynamics::learn(&[series(n, 3)], 0.0).unwrap();
         let standard_error = 1.0 / (n as f64).sqrt();
         let difference = learned.dynamics.transition() - truth().transition();
         // The largest of 256 numbers almost always lies within five standard errors.
@@ -139,16 +145,30 @@ mod tests {
     }
 
     #[test]
+    fn a_gap_between_sequences_is_no_step() {
+        let whole = series(4_000, 4);
+        let learned = ColorDynamics::learn(&[&whole[..2_000], &whole[2_100..]], 0.0).unwrap();
+        assert_eq!(learned.n_steps, 1_998 + 1_898);
+        // The states before and after the gap differ by some ten times the noise of a step; read as one sequence, they inflate it.
+        let noise = truth().noise().fixed_rows::<COLOR_DIM>(0).into_owned();
+        let ratio = learned.residual_covariance.trace() / (noise * noise.transpose()).trace();
+        // The standard error of the trace is below that of one variance, sqrt(2/n) = 0.023.
+        assert!((ratio - 1.0).abs() < 5.0 * 0.023, "{ratio}");
+        let fifteen: Vec<&[ColorStateVector]> = whole.chunks(3).take(15).collect();
+        assert!(matches!(ColorDynamics::learn(&fifteen, 1.0), Err(TrackingError::Empty { .. })));
+    }
+
+    #[test]
     fn a_sequence_that_stands_still_needs_a_ridge_and_then_stays() {
         let still = vec![ColorStateVector::repeat(0.5); 50];
-        assert!(ColorDynamics::learn(&still, 0.0).is_err());
-        let learned = ColorDynamics::learn(&still, 1e-3).unwrap();
+        assert!(ColorDynamics::learn(&[&still], 0.0).is_err());
+        let learned = ColorDynamics::learn(&[&still], 1e-3).unwrap();
         let state = ColorDistributionState {
             value: ColorStateVector::repeat(0.5),
             velocity: ColorStateVector::zeros(),
         };
         assert!((learned.dynamics.expected(&state).value - state.value).amax() < 1e-9);
-        assert!(ColorDynamics::learn(&still[..17], 1.0).is_err());
-        assert!(ColorDynamics::learn(&still, f64::NAN).is_err());
+        assert!(ColorDynamics::learn(&[&still[..17]], 1.0).is_err());
+        assert!(ColorDynamics::learn(&[&still], f64::NAN).is_err());
     }
 }

@@ -39,6 +39,9 @@ pub struct HeadDetector {
 }
 
 impl HeadDetector {
+    /// Least width of a head, pixels.
+    pub const MIN_WIDTH: f64 = 6.0;
+
     /// Learns from pictures with a box around the head in each, in bins as those of a tracker.
     ///
     /// # Errors
@@ -84,7 +87,7 @@ impl HeadDetector {
         widths: std::ops::RangeInclusive<f64>,
     ) -> Result<Option<BoundingBox>, TrackingError> {
         let (least, most) = (*widths.start(), *widths.end());
-        crate::error::checked("least width of a head", least, least >= 6.0, "at least 6 pixels")?;
+        crate::error::checked("least width of a head", least, least >= Self::MIN_WIDTH, "at least 6 pixels")?;
         let valid = most >= least && most.is_finite();
         crate::error::checked("largest width of a head", most, valid, "finite, at least the least")?;
         let (bins, field) = (ColorBinImage::new(&self.quantizer, picture)?, GradientField::new(picture));

@@ -10,4 +10,5 @@ mod lines;
 mod optimize;
 mod track;
 mod views;
+mod views_log;
 mod walls;

@@ -284,3 +284,25 @@ fn parameters_print_and_read_back_and_a_wrong_key_is_named() {
     let wrong = shot.scratch.file("wrong.toml", wrong);
     refused(&shot.run(&["--init", "1,1,9,9", "--params", wrong.to_str().unwrap()]), 1, "no_such_tracker");
 }
+
+#[test]
+fn a_detected_head_starts_the_tracker_without_a_box() {
+    let (taught, shot) = (Shot::new(), Shot::new());
+    let path = |shot: &Shot, name: &str| shot.scratch.path(name).to_str().unwrap().to_owned();
+    let (frames, truth) = (path(&taught, "frames"), path(&taught, "truth.txt"));
+    let learn = ["--learn-from", &frames, "--learn-truth", &truth, "--method", "head"];
+    // A picture without the head: its colours and rim are not there.
+    let blank = EncodedImage::png_rgb(320, 240, &[90; 320 * 240 * 3]).unwrap();
+    fs::write(shot.frame(0), &blank.bytes).unwrap();
+    let outcome = shot.run(&[&learn[..], &["--truth", &path(&shot, "truth.txt")]].concat());
+    assert_eq!(outcome.metric("n_frames_until_detection"), 1.0);
+    assert_eq!(outcome.event("head_not_detected"), 1);
+    assert!(outcome.metric("first_box_iou") > 0.5, "{}", outcome.metric("first_box_iou"));
+    assert!(outcome.metric("iou_mean") > 0.5);
+
+    (1..N_FRAMES).for_each(|index| fs::write(shot.frame(index), &blank.bytes).unwrap());
+    refused(&shot.run(&learn), 1, "no head was detected in 16 frames");
+    refused(&shot.run(&learn[..2]), 2, "--learn-truth");
+    taught.truth_of(&["0,0,0,0".to_owned()]);
+    refused(&shot.run(&learn), 1, "cannot learn a head from");
+}

@@ -9,7 +9,7 @@ const WIDTH: u32 = 256;
 const HEIGHT: u32 = 192;
 
 /// Coloured waves: every view differs from every other.
-fn painting() -> RgbImage {
+pub(super) fn painting() -> RgbImage {
     let wave = |phase: f64| (60.0 * phase.sin() + 120.0) as u8;
     RgbImage::from_fn(WIDTH, HEIGHT, |x, y| {
         let (x, y) = (f64::from(x), f64::from(y));
@@ -18,7 +18,7 @@ fn painting() -> RgbImage {
     })
 }
 
-fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
+pub(super) fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     image.into().write_to(&mut bytes, ImageFormat::Png).expect("encodes");
     bytes.into_inner()
@@ -62,7 +62,7 @@ fn figures_have_the_names_of_the_contract() {
 fn where_nothing_changed_every_drive_arrives_with_every_feature() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));
-    for feature in ["mean-var", "fft6", "hist6", "joined"] {
+    for feature in ["mean-var", "fft6", "hist6", "regions", "joined"] {
         let more = [&["--feature", feature][..], &as_learned()].concat();
         assert_eq!(run_views(&scene, &more).metric("successes"), 20.0, "{feature}");
     }
@@ -214,7 +214,7 @@ fn invalid_parameters_and_options_are_refused_by_name() {
         assert!(outcome.stderr.contains(key), "{text}: {}", outcome.stderr);
     }
     for (more, what_is_right) in [
-        (["--feature", "sift"], "[possible values: mean-var, fft6, hist6, joined]"),
+        (["--feature", "sift"], "[possible values: mean-var, fft6, hist6, regions, joined]"),
         (["--normalization", "some"], "[possible values: none, whole-scene, online]"),
         (["--shift", "4"], "two whole numbers"),
         (["--view", "0"], "1..=1000000"),

@@ -14,7 +14,7 @@ use wayfix_systems::{
         self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
     },
 };
-use wayfix_visual_tracking::ColorSpace;
+use wayfix_visual_tracking::{ColorSpace, HeadDetector};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -44,6 +44,8 @@ struct Settings {
     color_space: Option<ColorSpace>,
     /// Largest rate, in degrees a second, of a pan/tilt head that turns a part of the film's view after the target.
     pan_tilt_rate_deg_s: Option<f64>,
+    /// Numbers of the frames, from and up to, that teach a head, which is then detected in the first frames instead of given.
+    detect_from: Option<[usize; 2]>,
     /// True boxes: of a recording relative to the folder given by `--data`, of a stored log beside the plan.
     truth: Option<PathBuf>,
 }
@@ -104,7 +106,12 @@ fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let method = *settings.methods.first().context("give `methods`")?;
     let rate_hz = (!is_stored).then_some(options.frame_rate_hz);
     let params = settings.params();
-    let setup = TrackerConfig { method, truth, rate_hz, params, ..TrackerConfig::default() };
+    let learn = |[first, end]: [usize; 2]| -> Result<HeadDetector> {
+        let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
+        Ok(track::learn_head(&mut log, &truth, rate_hz, first..end, &params.head, job.log()?)?)
+    };
+    let detector = settings.detect_from.map(learn).transpose()?;
+    let setup = TrackerConfig { method, truth, rate_hz, params, detector, ..TrackerConfig::default() };
     let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates_file();
     let mut estimates =

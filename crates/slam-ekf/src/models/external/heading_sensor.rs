@@ -3,6 +3,7 @@ use wayfix_estimation_traits::{Angle, Pose2, SensorModel};
 
 /// Measures the heading in the frame of the map: a compass, or the orientation of an IMU that has one. Radians, counter-clockwise from x.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeadingSensor {
     /// Variance, rad².
     pub variance: f64,

@@ -8,6 +8,7 @@ use crate::{
 
 /// A measurement of the pose in the frame of the map, with its sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapMeasurement {
     /// A position, m.
     Position(PositionSensor, Vector2<f64>),

@@ -3,6 +3,7 @@ use wayfix_estimation_traits::{Pose2, SensorModel};
 
 /// Measures the pose in the frame of the map: a camera at the ceiling, or motion capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseSensor {
     /// Covariance of `(x, y, θ)` in the axes of the map, m and rad, as `geometry_msgs/PoseWithCovariance` has it.
     pub covariance: Matrix3<f64>,

@@ -15,6 +15,7 @@ use wayfix_estimation_traits::{Pose2, SensorModel};
 /// assert!((expected - Vector2::new(5.0, 3.0)).norm() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PositionSensor {
     /// The point that is measured, in the robot frame, m.
     pub antenna: Vector2<f64>,

@@ -7,7 +7,7 @@ use wayfix_slam_ekf::SlamSnapshot;
 use super::{SavedMapError, envelope};
 use crate::{
     saved::write_atomically,
-    slam::{AssociationRule, FrontEndState},
+    slam::{AssociationRule, ExternalState, FrontEndState},
 };
 
 /// All that a [`SlamSystem`](crate::slam::SlamSystem) remembers between two records, in a file.
@@ -26,6 +26,8 @@ pub struct SlamState<R, L, S> {
     pub taken_until: u64,
     /// Where odometry alone would put the robot.
     pub dead_reckoning: Pose2<f64>,
+    /// What it remembers of external sensors.
+    pub external: ExternalState,
     /// What the front end remembers.
     pub front_end: S,
 }

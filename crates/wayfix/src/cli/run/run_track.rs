@@ -1,7 +1,7 @@
 use std::{
     fs::File,
     io::{self, BufWriter, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::ExitCode,
     str::FromStr,
 };
@@ -9,7 +9,7 @@ use std::{
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_sensor_log::{Log, LogFormat, LogOpenOptions};
-use wayfix_visual_tracking::BoundingBox;
+use wayfix_visual_tracking::{BoundingBox, HeadDetector};
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
 use super::interrupt;
@@ -46,11 +46,17 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "PATH")]
     log: Vec<PathBuf>,
     /// Position of the target in the first frame: x,y,w,h or eight numbers [default: the first true box].
-    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["init_mask", "truth", "print_params"])]
+    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["init_mask", "learn_from", "truth", "print_params"])]
     init: Option<BoxArgument>,
     /// The same as a mask image of the size of the frames, in which the target is not black; it gives `contour` the exact outline.
     #[arg(long, value_name = "FILE", conflicts_with = "init")]
     init_mask: Option<PathBuf>,
+    /// Detect a head instead: a folder of pictures that teach its colours and rim. The tracker starts in the first frame with a head.
+    #[arg(long, value_name = "DIR", requires = "learn_truth", conflicts_with_all = ["init", "init_mask"])]
+    learn_from: Option<PathBuf>,
+    /// True boxes of --learn-from, one line a picture.
+    #[arg(long, value_name = "FILE", requires = "learn_from")]
+    learn_truth: Option<PathBuf>,
     /// True boxes, one line a frame.
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
@@ -69,6 +75,7 @@ Examples:
   wayfix run track --frames David/img --truth David/groundtruth_rect.txt
   wayfix run track --frames holiday --init 120,80,40,56 --out results
   wayfix run track --frames snail --init-mask snail.png --method contour
+  wayfix run track --frames today --learn-from yesterday --learn-truth yesterday.txt --method head
   wayfix run track --log camera.mcap --init 120,80,40,56 --json";
 
 /// The boxes beside the report, in the form of true ones.
@@ -96,11 +103,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let truth = match &arguments.truth {
-        Some(path) => TrueBoxes::read(path)
-            .with_context(|| format!("true boxes in {} are not usable", path.display()))?,
-        None => TrueBoxes::default(),
-    };
+    let truth = arguments.truth.as_deref().map(true_boxes).transpose()?.unwrap_or_default();
+    let detector = arguments.detector(&params)?;
     let (mut log, rate_hz) = arguments.open()?;
     let origin = log.meta().first_format();
     let mut outputs = Outputs::open("track", &arguments.common)?;
@@ -111,7 +115,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         Some(path) => Some(InitialTargetRegion::read_mask(path)?),
         None => arguments.init.map(|init| InitialTargetRegion::Box(init.0)),
     };
-    let setup = TrackerConfig { method: arguments.method, params, init, truth, rate_hz };
+    let setup = TrackerConfig { method: arguments.method, params, init, detector, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = terminal::counter("tracking");
     let track = track::run(system, &mut log, |RunStep { system, record, stop, .. }| {
@@ -139,7 +143,23 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+fn true_boxes(path: &Path) -> Result<TrueBoxes> {
+    TrueBoxes::read(path).with_context(|| format!("true boxes in {} are not usable", path.display()))
+}
+
 impl Arguments {
+    fn detector(&self, params: &TrackParams) -> Result<Option<HeadDetector>> {
+        let (Some(folder), Some(truth)) = (&self.learn_from, &self.learn_truth) else { return Ok(None) };
+        let options = LogOpenOptions { format: Some(LogFormat::Images), ..LogOpenOptions::default() };
+        let (rate_hz, truth) = (Some(options.frame_rate_hz), true_boxes(truth)?);
+        let mut log = wayfix_sensor_log::open(folder, &options)?;
+        let detector = track::learn_head(&mut log, &truth, rate_hz, .., &params.head, folder)?;
+        if !log.report().is_clean() {
+            print_message(log.report());
+        }
+        Ok(Some(detector))
+    }
+
     /// The log, and the frames a second of a folder.
     fn open(&self) -> Result<(Log, Option<f64>)> {
         let mut options = LogOpenOptions::default();

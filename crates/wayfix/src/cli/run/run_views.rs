@@ -15,8 +15,12 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     settings::from_toml,
     system::Stopwatch,
-    views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig, ViewsParams},
+    views::{
+        self, DescriptorKind, LightNormalization, LoggedViews, RealSceneTransform, ViewSystem,
+        ViewSystemConfig, ViewsParams, ViewsRun,
+    },
 };
+use wayfix_table_log::{MoveTable, MovedFrameFolder};
 
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
 ///
@@ -29,14 +33,26 @@ use wayfix_systems::{
 ///
 /// `successes` counts the drives that report the goal and are there; a drive that ends uncertain is no success. `steps_mean` is the mean number of
 /// moves of a drive, `steps_to_certainty_mean` that until the belief first reaches 0.999, the confidence required to stop.
+///
+/// With --log the robot does not drive: the pictures of a folder are localized among those of --learn-from, one picture a place. `moves.csv` in a folder
+/// names for each picture the commanded move (`dx`, `dy`) and the true place (`column`, `row`); without it pictures are one place apart.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
     /// The scene that the robot drives in, JPEG or PNG.
-    #[arg(long, value_name = "IMAGE", required_unless_present = "print_params")]
+    #[arg(long, value_name = "IMAGE", required_unless_present_any = ["print_params", "log"])]
     scene: Option<PathBuf>,
-    /// The scene as it was learned, of the same size [default: --scene].
-    #[arg(long, value_name = "IMAGE")]
+    /// A logged drive: a folder of pictures, each after a move.
+    #[arg(long, value_name = "DIR", requires = "learn_from", conflicts_with_all = SCENE_OPTIONS)]
+    log: Option<PathBuf>,
+    /// Table of the moves of --log [default: moves.csv in the folder, else each picture is one column on].
+    #[arg(long, value_name = "FILE", requires = "log")]
+    actions: Option<PathBuf>,
+    /// Table of a drive with slip, `dx,dy,column,row`: transitions and diffusion are learned from it.
+    #[arg(long, value_name = "FILE")]
+    moves: Option<PathBuf>,
+    /// The scene as it was learned, of the same size [default: --scene]; with --log the folder of learned pictures.
+    #[arg(long, value_name = "PATH")]
     learn_from: Option<PathBuf>,
     /// Width and height of a view, pixels.
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = positive())]
@@ -78,11 +94,27 @@ pub(in crate::cli) struct Arguments {
     common: Common,
 }
 
+/// What a logged drive has no use for.
+const SCENE_OPTIONS: [&str; 11] = [
+    "scene",
+    "view",
+    "step",
+    "normalization",
+    "trials",
+    "gain",
+    "offset",
+    "gamma",
+    "shift",
+    "register",
+    "informed",
+];
+
 const EXAMPLES: &str = "\
 Examples:
   wayfix run views --scene china.jpg --out results
   wayfix run views --scene china.jpg --view 256 --step 16 --feature hist6 --normalization online
   wayfix run views --scene right.png --learn-from left.png --register 64 --feature joined
+  wayfix run views --log tuesday --learn-from monday --moves drive.csv --feature joined
   wayfix run views --scene china.jpg --gain 1 --offset -30 --gamma 1 --shift -5,0 --json";
 
 fn positive() -> RangedU64ValueParser {
@@ -117,6 +149,13 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
+    let moves = arguments.moves.as_deref().map(MoveTable::read).transpose()?;
+    if let Some(moves) = moves.as_ref().filter(|moves| !moves.read.is_clean()) {
+        print_message(&moves.read);
+    }
+    if let Some(log) = &arguments.log {
+        return logged(&arguments, log, moves.as_ref(), &params);
+    }
     let scene_path = arguments.scene.as_deref().context("give --scene")?;
     let scene = read(scene_path)?;
     let learned = arguments.learn_from.as_deref().map(read).transpose()?;
@@ -138,9 +177,13 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         feature: arguments.feature,
         normalization: arguments.normalization,
     };
+    let mut system = ViewSystem::learn(learned, &real, &setup, &params)?;
+    if let Some(moves) = &moves {
+        system = system.with_moves(moves)?;
+    }
     let bar = terminal::bar(arguments.trials as usize, "drives");
-    let run =
-        views::run(learned, &real, &setup, &params, arguments.trials, arguments.common.seed, &|| bar.inc(1));
+    let (learning, seed) = (stopwatch.elapsed(), arguments.common.seed);
+    let run = ViewsRun::drive(system, learning, arguments.trials, seed, &|| bar.inc(1));
     bar.finish_and_clear();
     let views = run?;
 
@@ -152,6 +195,39 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
     }
     outputs.show(run, || views::plots(&views, learned, &real, arguments.common.seed))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Localizes the pictures of a folder.
+fn logged(
+    arguments: &Arguments,
+    log: &Path,
+    moves: Option<&MoveTable>,
+    params: &ViewsParams,
+) -> Result<ExitCode> {
+    let folder = |path: &Path, table: Option<&Path>| -> Result<MovedFrameFolder> {
+        let folder = MovedFrameFolder::read(path, table)?;
+        if !folder.read.is_clean() {
+            print_message(&folder.read);
+        }
+        if !folder.has_table {
+            print_message(format!("note: {} has no table: each picture is one place on", path.display()));
+        }
+        Ok(folder)
+    };
+    let learn_from = arguments.learn_from.as_deref().context("give --learn-from")?;
+    let learned = folder(learn_from, None)?;
+    let drive = folder(log, arguments.actions.as_deref())?;
+    let mut outputs = Outputs::open("views", &arguments.common)?;
+    let stopwatch = Stopwatch::start();
+    let run = LoggedViews::localize(&learned, &drive, moves, arguments.feature, params)?;
+    let (name, seconds) = (log.display().to_string(), stopwatch.elapsed().as_secs_f64());
+    let summary = ReportRun { name, seconds, ..run.summarize(params) };
+    let sinks = outputs.sinks()?;
+    if !sinks.is_empty() {
+        views::draw_logged(&run, &drive, sinks)?;
+    }
+    outputs.show(summary, || views::logged_plots(&run, arguments.feature))?;
     Ok(ExitCode::SUCCESS)
 }
 

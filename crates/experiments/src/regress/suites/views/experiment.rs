@@ -21,5 +21,6 @@ pub(in crate::regress::suites) fn run(job: &PlannedJob<'_>) -> Result<ReportRun>
         Experiment::Tables => tables(job, &settings),
         Experiment::Choices => choices(job, &settings),
         Experiment::Corridor => crate::corridor::run(job.log()?),
+        Experiment::CorridorLog => crate::corridor::run_logged(job.log()?),
     }
 }

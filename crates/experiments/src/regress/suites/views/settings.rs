@@ -50,6 +50,8 @@ pub(super) enum Experiment {
     Choices,
     /// A corridor that was driven twice.
     Corridor,
+    /// The same with actions from the order of the frames.
+    CorridorLog,
 }
 
 /// Imaging conditions of a composed scene.
