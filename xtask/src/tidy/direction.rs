@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 20] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 21] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -23,6 +23,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 20] = [
     ("sensor-log", &["estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
     ("evaluation", &["estimation-traits", "gaussian-core", "sensor-log"]),
+    ("record-checks", &["estimation-traits", "integrity", "sensor-log"]),
     ("table-log", &["estimation-traits", "evaluation", "sensor-log"]),
     (
         "systems",
@@ -37,6 +38,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 20] = [
             "integrity",
             "kalman",
             "line-extract",
+            "record-checks",
             "scan-match",
             "scene-sim",
             "sensor-log",

@@ -2,30 +2,21 @@
 
 mod drive;
 mod estimate_recorder;
-mod events;
-mod heading_sign;
-mod held_velocity;
 mod known_start;
 mod laser;
-mod odometry_delay;
-mod odometry_lag;
-mod overlap;
-mod plausible_increment;
 mod robot_drawing;
 
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
-pub use events::{EventCounts, RefusedRecord};
-pub(crate) use heading_sign::HeadingSignTest;
-pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
-pub use odometry_delay::without_odometry_delay;
-pub use odometry_lag::warn_of_lag;
-pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
-pub use plausible_increment::IncrementPlausibilityCheck;
 pub(crate) use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
 pub use wayfix_evaluation::terminal::Stopwatch;
+pub use wayfix_record_checks::{
+    EventCounts, FASTEST, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck,
+    NamedRecordKind, ODOMETRY, RefusedRecord, VELOCITY_TIMEOUT, check_overlap, check_velocity, warn_of_lag,
+    without_odometry_delay,
+};
 pub use wayfix_slam_ekf::MotionStatistics;
 
 use wayfix_sensor_log::Record;

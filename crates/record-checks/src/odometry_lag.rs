@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::Stamp;
 
-use super::EventCounts;
+use crate::EventCounts;
 
 /// Largest lag searched, s: larger offsets indicate another clock.
 const LARGEST_LAG: f64 = 1.0;

@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::ODOMETRY;
+use crate::ODOMETRY;
 
 /// The records of a log with the odometry stamped `delay` seconds earlier, sorted by time.
 ///

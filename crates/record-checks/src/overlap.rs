@@ -1,7 +1,7 @@
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::VELOCITY_TIMEOUT;
+use crate::VELOCITY_TIMEOUT;
 
 /// A kind of record, for messages.
 pub type NamedRecordKind<'a> = (&'a str, fn(&RecordData) -> bool);

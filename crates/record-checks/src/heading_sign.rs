@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use wayfix_estimation_traits::wrap_angle;
 use wayfix_integrity::{IntegrityError, ProbabilityRatioTest, RatioVerdict};
 
-use super::EventCounts;
+use crate::EventCounts;
 
 /// Largest probability of a wrong verdict, and share of outliers among the headings: as rare as the correct measurements that the default gate of
 /// EKF-SLAM rejects.
@@ -14,7 +14,7 @@ const ERROR_RATE: f64 = 1e-4;
 /// Both hypotheses predict the innovation of a heading $`z`$ from the predicted heading $`θ`$: $`z - θ`$, or $`-z - θ`$, each normal with the
 /// innovation variance, or an outlier that is uniform on the circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct HeadingSignTest(ProbabilityRatioTest);
+pub struct HeadingSignTest(ProbabilityRatioTest);
 
 impl Default for HeadingSignTest {
     fn default() -> Self {
@@ -24,7 +24,7 @@ impl Default for HeadingSignTest {
 
 impl HeadingSignTest {
     /// A test that goes on from the log odds of an earlier one; 0 is a new one.
-    pub(crate) fn from_log_odds(log_odds: f64) -> Result<Self, IntegrityError> {
+    pub fn from_log_odds(log_odds: f64) -> Result<Self, IntegrityError> {
         Ok(Self(ProbabilityRatioTest::from_error_rate(ERROR_RATE)?.with_sum(log_odds)?))
     }
 
@@ -51,7 +51,7 @@ impl HeadingSignTest {
     }
 
     /// Whether a heading may be used. Counts it otherwise.
-    pub(crate) fn is_admitted(
+    pub fn is_admitted(
         &mut self,
         measured: f64,
         predicted: f64,
@@ -71,7 +71,7 @@ impl HeadingSignTest {
     }
 
     /// Says if the compass is mirrored by all headings so far.
-    pub(crate) fn warn_if_mirrored(&self, events: &mut EventCounts) {
+    pub fn warn_if_mirrored(&self, events: &mut EventCounts) {
         if self.0.verdict() == RatioVerdict::Second {
             events.warn(
                 "compass_mirrored",
@@ -81,7 +81,7 @@ impl HeadingSignTest {
     }
 
     /// Logarithm of the odds that the compass is mirrored.
-    pub(crate) fn log_odds(&self) -> f64 {
+    pub fn log_odds(&self) -> f64 {
         self.0.sum()
     }
 }

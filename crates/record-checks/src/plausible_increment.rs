@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Stamp;
 
-use super::FASTEST;
+use crate::FASTEST;
 
 /// Largest accepted distance between two records, m, if the time between them is unknown.
 const FARTHEST: f64 = 1e5;
