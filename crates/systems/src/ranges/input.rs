@@ -55,7 +55,9 @@ impl Interpolator<'_> {
         while let Some((end, row)) = self.rows.get(self.next).filter(|_| self.at < stamp) {
             let begin = self.rows[self.next - 1].0;
             let until = (*end).min(stamp);
-            let share = until.seconds_since(self.at) / end.seconds_since(begin).max(f64::MIN_POSITIVE);
+            // Rows of equal stamps follow each other at once.
+            let duration = end.seconds_since(begin);
+            let share = if duration > 0.0 { until.seconds_since(self.at) / duration } else { 1.0 };
             motion = motion.compose(&Pose2::exp(&(row.log() * share)));
             self.at = until;
             if until == *end {
