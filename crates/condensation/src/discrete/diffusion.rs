@@ -59,6 +59,16 @@ impl DiffusionKernel {
         }
         Ok(Self { passes, n_states: space.n_states() })
     }
+
+    /// Share of the belief of `from` that goes to `to`, along a line of states.
+    pub(crate) fn share(&self, from: usize, to: usize) -> f64 {
+        match self.passes.as_slice() {
+            [line] => {
+                line.weights.get(from.abs_diff(to)).map_or(0.0, |weight| line.inverse_mass[from] * weight)
+            }
+            _ => f64::from(u8::from(from == to)),
+        }
+    }
 }
 
 impl TransitionModel for DiffusionKernel {

@@ -1,7 +1,7 @@
 use crate::error::check_state;
 use crate::{
     CondensationError, DiffusionKernel, DiscreteStateSpace, GridMove, PositionGrid, SparseTransition,
-    TransitionCounts, TransitionModel,
+    TransitionCounts,
 };
 
 /// Weight of the commanded move beside the logged ones, in moves: the prior of a state that was never left.
@@ -66,20 +66,20 @@ impl LearnedMotion {
         }
         let (columns, rows) = (AxisKernels::new(grid.columns())?, AxisKernels::new(grid.rows())?);
         let predictions: Vec<_> = (0..moves.len()).map(|i| without(grid, moves, i)).collect();
-        let log_likelihood = |column: &[f64], row: &[f64]| -> f64 {
+        let log_likelihood = |column: &DiffusionKernel, row: &DiffusionKernel| -> f64 {
             let share = |(made, predicted): (&LoggedMove, &Vec<(usize, f64)>)| -> f64 {
                 let (x, y) = grid.place(made.to);
                 let from = |&(t, p): &(usize, f64)| {
                     let (at_x, at_y) = grid.place(t);
-                    p * column[at_x * grid.columns() + x] * row[at_y * grid.rows() + y]
+                    p * column.share(at_x, x) * row.share(at_y, y)
                 };
                 predicted.iter().map(from).sum::<f64>().ln()
             };
             moves.iter().zip(&predictions).map(share).sum()
         };
         let mut best = (f64::NEG_INFINITY, 0, 0);
-        for (i, column) in columns.matrices.iter().enumerate() {
-            for (j, row) in rows.matrices.iter().enumerate() {
+        for (i, column) in columns.kernels.iter().enumerate() {
+            for (j, row) in rows.kernels.iter().enumerate() {
                 let value = log_likelihood(column, row);
                 if value > best.0 {
                     best = (value, i, j);
@@ -89,16 +89,15 @@ impl LearnedMotion {
         let (_, i, j) = best;
         let spread = |t: usize| {
             let (x, y) = grid.place(t);
-            let (column, row) = (&columns.matrices[i], &rows.matrices[j]);
-            (0..grid.rows())
-                .map(move |to| (to, row[y * grid.rows() + to]))
-                .filter(|(_, p)| *p > 0.0)
-                .flat_map(move |(to_y, p_y)| {
+            let (column, row) = (&columns.kernels[i], &rows.kernels[j]);
+            (0..grid.rows()).map(move |to| (to, row.share(y, to))).filter(|(_, p)| *p > 0.0).flat_map(
+                move |(to_y, p_y)| {
                     (0..grid.columns()).filter_map(move |to_x| {
-                        let p = p_y * column[x * grid.columns() + to_x];
+                        let p = p_y * column.share(x, to_x);
                         (p > 0.0).then_some((to_y * grid.columns() + to_x, p))
                     })
-                })
+                },
+            )
         };
         let transition = |&action: &GridMove| {
             let counted = counts.transition(action, PRIOR_MOVES)?;
@@ -152,7 +151,7 @@ fn without(grid: &PositionGrid, moves: &[LoggedMove], i: usize) -> Vec<(usize, f
 /// Diffusion along one axis, for every width that is compared; the first is none.
 struct AxisKernels {
     sigmas: Vec<f64>,
-    matrices: Vec<Vec<f64>>, // from, to
+    kernels: Vec<DiffusionKernel>,
 }
 
 impl AxisKernels {
@@ -161,18 +160,9 @@ impl AxisKernels {
         let widths = std::iter::successors(Some(MIN_SIGMA), |sigma| Some(sigma * RATIO));
         let sigmas: Vec<f64> =
             std::iter::once(0.0).chain(widths.take_while(|sigma| *sigma < len as f64 && len > 1)).collect();
-        let matrix = |&sigma: &f64| {
-            let kernel = DiffusionKernel::gaussian(&line, &[0.0, sigma])?;
-            let (mut unit, mut matrix) = (vec![0.0; len], vec![0.0; len * len]);
-            for (from, row) in matrix.chunks_exact_mut(len).enumerate() {
-                unit[from] = 1.0;
-                kernel.predict(&unit, row);
-                unit[from] = 0.0;
-            }
-            Ok(matrix)
-        };
-        let matrices = sigmas.iter().map(matrix).collect::<Result<_, CondensationError>>()?;
-        Ok(Self { sigmas, matrices })
+        let kernels = sigmas.iter().map(|&sigma| DiffusionKernel::gaussian(&line, &[0.0, sigma]));
+        let kernels = kernels.collect::<Result<_, _>>()?;
+        Ok(Self { sigmas, kernels })
     }
 }
 
@@ -183,6 +173,7 @@ mod tests {
     use rand_distr::{Distribution, Normal};
 
     use super::*;
+    use crate::TransitionModel;
 
     const RIGHT: GridMove = GridMove { dx: 1, dy: 0 };
 
@@ -251,5 +242,31 @@ mod tests {
         assert!(matches!(refused(&[far]), CondensationError::Empty { .. }));
         let outside = LoggedMove { from: 0, action: RIGHT, to: 3 };
         assert!(matches!(refused(&[outside]), CondensationError::State { .. }));
+    }
+
+    #[test]
+    fn share_of_a_kernel_is_what_it_predicts() {
+        let line = PositionGrid::new(9, 1).unwrap();
+        for sigma in [0.0, 0.5, 2.0, 30.0] {
+            let kernel = DiffusionKernel::gaussian(&line, &[0.0, sigma]).unwrap();
+            for from in 0..9 {
+                let (mut unit, mut predicted) = ([0.0; 9], [0.0; 9]);
+                unit[from] = 1.0;
+                kernel.predict(&unit, &mut predicted);
+                assert_eq!(predicted, std::array::from_fn(|to| kernel.share(from, to)), "{sigma} {from}");
+            }
+        }
+    }
+
+    #[test]
+    fn long_route_is_learned_in_little_memory() {
+        // A matrix for each width would take 11 GB.
+        let grid = PositionGrid::new(5000, 1).unwrap();
+        let moves: Vec<LoggedMove> = (0..100)
+            .map(|k| LoggedMove { from: 49 * k, action: RIGHT, to: 49 * k + 1 + usize::from(k % 4 == 0) })
+            .collect();
+        let learned = LearnedMotion::learn(&grid, &moves).unwrap();
+        // One move of four goes a state too far: σ² = 1/4, here within a factor of two of σ.
+        assert!((0.25..1.0).contains(&learned.diffusion_sigmas()[0]), "{:?}", learned.diffusion_sigmas());
     }
 }
