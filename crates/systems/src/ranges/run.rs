@@ -6,7 +6,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
 use wayfix_slam_smoother::range_only::{
-    self, Calibration, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
+    self, Calibration, CalibrationPrior, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
 };
 use wayfix_table_log::RangeRecording;
 
@@ -47,7 +47,8 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     let StampedInput { stamps, input } =
         StampedInput::new(recording, known.unwrap_or(Pose2::new(0.0, 0.0, 0.0)), &mut events);
     ensure!(!input.ranges.is_empty(), "no range is positive and within the time of odometry");
-    let estimate = range_only::estimate(&input, &RangeOnlyParams::default())?;
+    let params = RangeOnlyParams::default();
+    let estimate = range_only::estimate(&input, &params)?;
     let dead_reckoning = input.dead_reckoning();
     let step = stopwatch.elapsed() / stamps.len() as u32;
     let stamped = |(index, covariance): &(usize, Matrix3<f64>)| StampedEstimate {
@@ -60,7 +61,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
         step,
     };
     let stamped_estimates: Vec<_> = estimate.pose_covariances.iter().map(stamped).collect();
-    say_assumptions(&estimate, &mut events);
+    say_assumptions(&estimate, &params.calibration, &mut events);
     let span = stamps.first().copied().zip(stamps.last().copied());
     warn_of_no_overlap(&mut events, &path, span);
     let true_beacons = truth.iter().filter_map(|record| match record.data {
@@ -71,7 +72,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     Ok(RangeRun { estimate, stamped_estimates, truth: path, true_beacons, events })
 }
 
-fn say_assumptions(estimate: &RangeOnlyEstimate, events: &mut EventCounts) {
+fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, events: &mut EventCounts) {
     let RangeOnlyNoise { translation_per_sqrt_meter, heading_per_sqrt_meter, .. } = estimate.noise;
     let range = estimate.range_sigma;
     let Calibration { bias, log_scale } = estimate.calibration;
@@ -79,8 +80,8 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, events: &mut EventCounts) {
     events.warn(
         "receiver_calibration_estimated",
         format!(
-            "one bias and one scale for all beacons, by the log: {bias:.3} m (σ {:.3}) and {:.4} (σ {:.4}); beforehand 0 m (σ 10) and 1 (σ 0.1)",
-            sigma.bias, log_scale.exp(), sigma.log_scale
+            "one bias and one scale for all beacons, by the log: {bias:.3} m (σ {:.3}) and {:.4} (σ {:.4}); beforehand 0 m (σ {}) and 1 (σ {})",
+            sigma.bias, log_scale.exp(), sigma.log_scale, prior.bias_sigma, prior.log_scale_sigma
         ),
     );
     events.warn(
