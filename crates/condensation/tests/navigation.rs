@@ -4,6 +4,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::sync::Arc;
 
 use common::{Drive, scene};
@@ -99,7 +100,8 @@ fn light_is_found_together_with_the_place() {
     for seed in 0..5 {
         let (light, _) = trial.run(seed, ActionSelection::Greedy, None).2.disturbance();
         assert!(
-            (light.gain / 0.7 - 1.0).abs() < 0.08 && (light.offset - 20.0).abs() < 8.0,
+            abs_diff_eq!(light.gain / 0.7, 1.0, epsilon = 0.08)
+                && abs_diff_eq!(light.offset, 20.0, epsilon = 8.0),
             "run {seed}: {light:?}"
         );
     }
@@ -145,7 +147,7 @@ fn a_constant_scene_ends_unsure() {
         (NavigationOutcome::Unsure, NavigatorParams::default().max_steps)
     );
     assert!(localizer.belief().iter().all(|p| p.is_finite()));
-    assert!((localizer.belief().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(localizer.belief().iter().sum::<f64>(), 1.0, epsilon = 1e-9);
 }
 
 struct Walk {

@@ -112,13 +112,14 @@ pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     #[test]
     fn lower_tail_with_two_degrees_is_the_exponential() {
         for probability in [1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.3] {
             let expected = -2.0 * f64::ln_1p(-probability);
             let found = quantile(2, probability).unwrap();
-            assert!((found / expected - 1.0).abs() < 1e-9, "{probability}: {found} {expected}");
+            assert!(abs_diff_eq!(found / expected, 1.0, epsilon = 1e-9), "{probability}: {found} {expected}");
         }
     }
 
@@ -132,7 +133,10 @@ mod tests {
             (3, 1e-3, 2.4297585815692657e-2),
         ] {
             let found = quantile(dof, probability).unwrap();
-            assert!((found / expected - 1.0).abs() < 1e-6, "{dof} {probability}: {found} {expected}");
+            assert!(
+                abs_diff_eq!(found / expected, 1.0, epsilon = 1e-6),
+                "{dof} {probability}: {found} {expected}"
+            );
         }
     }
 }

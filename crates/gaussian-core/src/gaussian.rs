@@ -119,6 +119,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
     use wayfix_estimation_traits::{Angle, Pose2};
 
@@ -144,7 +145,7 @@ mod tests {
         let information = covariance.try_inverse().unwrap();
         let gaussian = Gaussian::from_information(Vector3::zeros(), &information).unwrap();
         // Error of solving: condition number (about 3) times a few rounding errors.
-        assert!((gaussian.covariance() - covariance).norm() < 1e-14 * covariance.norm());
+        assert_abs_diff_eq!(*gaussian.covariance(), covariance, epsilon = 1e-14 * covariance.norm());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Stores and the lab: what is seen, where one drives, what changes.
 
+use approx::abs_diff_eq;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::WheeledRobotParams;
@@ -159,7 +160,10 @@ fn calibrated_wheels_drift_by_what_is_said_of_them() {
         expected += 0.01_f64.powi(2) + 0.02_f64.powi(2) + (3e-3 * turned).powi(2);
     }
     // σ of the mean of 40 squares of Gaussian numbers is √(2/40) of it.
-    assert!((squares / expected - 1.0).abs() < 4.0 * (2.0 / N as f64).sqrt(), "{squares} {expected}");
+    assert!(
+        abs_diff_eq!(squares / expected, 1.0, epsilon = 4.0 * (2.0 / N as f64).sqrt()),
+        "{squares} {expected}"
+    );
 }
 
 #[test]

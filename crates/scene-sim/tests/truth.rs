@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::abs_diff_eq;
 use support::{assert_near, deviation, mean, run, streams, world};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
 use wayfix_scene_sim::drive::{WheelSlipParams, WheeledRobotParams};
@@ -114,7 +115,7 @@ fn an_open_route_ends_at_rest_at_its_end() {
         LawnMowerRoute { n_rows: 1, row_length_m: 5.0, spacing_m: 1.0 }.route().expect("valid parameters");
     let poses = true_poses(&drive(route, WheeledRobotParams::default(), None, 30_000));
     let end = poses[poses.len() - 1];
-    assert!((end.x() - 2.5).abs() < 0.1 && end == poses[poses.len() - 2], "ended at {end:?}");
+    assert!(abs_diff_eq!(end.x(), 2.5, epsilon = 0.1) && end == poses[poses.len() - 2], "ended at {end:?}");
 }
 
 #[test]
@@ -167,7 +168,10 @@ fn wheels_that_are_not_as_built_bend_the_way() {
     let poses = true_poses(&records);
     let travelled = poses[poses.len() - 1].x() - poses[0].x();
     let believed: f64 = increments(&records).iter().map(Pose2::heading).sum();
-    assert!((believed / travelled - 0.02 / 0.30).abs() < 0.002, "{believed} rad over {travelled} m");
+    assert!(
+        abs_diff_eq!(believed / travelled, 0.02 / 0.30, epsilon = 0.002),
+        "{believed} rad over {travelled} m"
+    );
 }
 
 #[test]
@@ -207,7 +211,10 @@ fn encoders_count_whole_ticks_and_lose_none() {
     assert!(steps.iter().all(|x| ((x / tick_m) - (x / tick_m).round()).abs() < 1e-6));
     let poses = true_poses(&records);
     let travelled = poses[poses.len() - 1].x() - poses[0].x();
-    assert!((steps.iter().sum::<f64>() - travelled).abs() <= tick_m, "errors of counting do not add up");
+    assert!(
+        abs_diff_eq!(steps.iter().sum::<f64>(), travelled, epsilon = tick_m),
+        "errors of counting do not add up"
+    );
 }
 
 #[test]

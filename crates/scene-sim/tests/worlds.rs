@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::assert_abs_diff_eq;
 use support::streams;
 use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::RandomStreamPurpose;
@@ -114,7 +115,7 @@ fn an_office_floor_is_closed_but_for_its_doors() {
         let (inside, outside) = (Vector2::new(x, -9.6), Vector2::new(x, -9.71));
         !plan.walls.iter().any(|wall| wall.occludes(&inside, &outside))
     });
-    assert!((open.count() as f64 * 20.0 / f64::from(samples) - 5.0 * 0.9).abs() < 0.04);
+    assert_abs_diff_eq!(open.count() as f64 * 20.0 / f64::from(samples), 5.0 * 0.9, epsilon = 0.04);
 }
 
 #[test]
@@ -146,6 +147,10 @@ fn other_robots_follow_routes_and_targets_keep_order() {
             kinds,
             [DetectionTarget::Landmark(4), DetectionTarget::UnknownCode(99), DetectionTarget::Robot(2)]
         );
-        assert!((world.targets(seconds)[2].1 - Vector2::new(1.0 + 0.5 * seconds, 0.0)).norm() < 1e-12);
+        assert_abs_diff_eq!(
+            world.targets(seconds)[2].1,
+            Vector2::new(1.0 + 0.5 * seconds, 0.0),
+            epsilon = 1e-12
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a model that breaks a law fails the test")]
 
+use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
@@ -55,11 +56,10 @@ fn of_walls() {
     for (line, delta) in lines.iter().flat_map(|line| [(line, 1.5), (line, -1.5), (line, 1e-8), (line, 0.0)])
     {
         let delta = Vector2::new(0.7, delta);
-        assert!((line.local(&line.retract(&delta)) - delta).norm() < 1e-12);
+        assert_abs_diff_eq!(line.local(&line.retract(&delta)), delta, epsilon = 1e-12);
         let same = WallLine::new(-line.rho, line.alpha + PI);
-        assert!(
-            line.local(&same).norm() < 1e-12 && (same.local(&line.retract(&delta)).x + 0.7).abs() < 1e-12
-        );
+        assert_abs_diff_eq!(same.local(&line.retract(&delta)).x, -0.7, epsilon = 1e-12);
+        assert!(line.local(&same).norm() < 1e-12);
     }
     let ends = |line: WallLine| [line.point_at(-1.0), line.point_at(2.5)];
     let walls = lines.map(|line| Wall::between(line, ends(line)));

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -114,7 +115,7 @@ fn intersection_is_the_sum_of_the_smaller_counts() {
     let nothing = ColorHistogram::empty(&quantizer);
     assert_eq!(nothing.intersection(&of(rising)), Ok(0.0));
     assert_eq!(nothing.scaled_to(7.0), Ok(nothing.clone()));
-    assert!((of(rising).scaled_to(1.0).unwrap().total() - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(of(rising).scaled_to(1.0).unwrap().total(), 1.0, epsilon = 1e-12);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 #[path = "common/plain_mask.rs"]
 mod plain_mask;
 
+use approx::assert_abs_diff_eq;
 use plain_mask::Plain;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -91,7 +92,8 @@ proptest! {
         if let (Some([u, v]), Some(rect)) = (a.centroid(), a.bounding_rect()) {
             let n = plain_a.pixels().len() as f64;
             let mean = |axis: usize| plain_a.pixels().iter().map(|p| p[axis] as f64 + 0.5).sum::<f64>() / n;
-            prop_assert!((u - mean(0)).abs() < 1e-9 && (v - mean(1)).abs() < 1e-9);
+            assert_abs_diff_eq!(u, mean(0), epsilon = 1e-9);
+            assert_abs_diff_eq!(v, mean(1), epsilon = 1e-9);
             let ends = |axis: usize| {
                 let values = || plain_a.pixels().into_iter().map(move |p| p[axis]);
                 (values().min().unwrap(), values().max().unwrap() + 1)

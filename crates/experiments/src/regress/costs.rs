@@ -126,6 +126,7 @@ pub fn calibration_seconds() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn run(name: &str) -> SeededRun {
         SeededRun { suite: "slam".to_owned(), run: name.to_owned(), seed: 1 }
@@ -137,7 +138,7 @@ mod tests {
         let costs = RunCosts { calibration_s: 0.1, full, ..RunCosts::default() };
         let estimate = costs.estimate(false, &[run("a"), run("b"), run("c")], 0.2);
         assert_eq!((estimate.n_runs, estimate.n_unknown), (3, 1));
-        assert!((estimate.seconds - 8.0).abs() < 1e-12, "{estimate:?}");
+        assert_abs_diff_eq!(estimate.seconds, 8.0, epsilon = 1e-12);
         assert_eq!(costs.estimate(true, &[run("a")], 0.2).n_unknown, 1);
     }
 
