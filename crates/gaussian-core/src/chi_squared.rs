@@ -102,7 +102,7 @@ fn lower_tail(dof: f64, probability: f64) -> f64 {
     (0.5 * (low + high)).exp()
 }
 
-pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
+fn check_probability(value: f64) -> Result<(), GaussianError> {
     if value > 0.0 && value < 1.0 {
         return Ok(());
     }

@@ -59,14 +59,6 @@ where
         symmetrize(&mut covariance);
         Ok(Self { mean, covariance, cross_covariance })
     }
-
-    /// The transformed Gaussian.
-    ///
-    /// # Errors
-    /// Returns an error if the covariance is singular.
-    pub fn into_gaussian(self) -> Result<Gaussian<Z>, GaussianError> {
-        Gaussian::new(self.mean, self.covariance)
-    }
 }
 
 /// Moments of weighted points: mean on the manifold, covariance at the mean.
