@@ -14,7 +14,7 @@ use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
     DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
     NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
-    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped,
+    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped,
     shifted,
 };
 
@@ -66,7 +66,8 @@ const OTHER_LIGHT: LightChange = LightChange { gain: 0.7, offset: 20.0, gamma: 1
 fn every_feature_reaches_every_goal_in_another_light() {
     let learned = scene(240, 176, 3);
     let real = shifted(&OTHER_LIGHT.apply(&learned).unwrap(), 4, 3);
-    let matched = mapped(&real, &histogram_match(&real, &learned));
+    let light = light_match(&real, &learned).unwrap();
+    let matched = mapped(&real, &[light.inverse_table().unwrap(); 3]);
     let features: [&dyn GlobalDescriptor; 3] =
         [&ColorMeanStdDescriptor, &Fft6Descriptor, &DominantGraysDescriptor::default()];
     for (number, feature) in features.into_iter().enumerate() {
