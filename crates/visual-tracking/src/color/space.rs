@@ -73,7 +73,7 @@ impl ColorSpace {
     }
 
     /// Whether 0 and 1 of an axis are the same, as they are for the hue.
-    pub fn is_circular(self, axis: usize) -> bool {
+    pub(crate) fn is_circular(self, axis: usize) -> bool {
         match self {
             Self::Hsi => axis == 0,
             Self::Custom(space) => space.circular_axis == Some(axis),

@@ -147,7 +147,7 @@ impl Outline {
     }
 
     /// The smallest convex outline around it, by Andrew's monotone chain.
-    pub fn convex_hull(&self) -> Self {
+    pub(crate) fn convex_hull(&self) -> Self {
         let mut sorted = self.points.clone();
         sorted.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
         let turn = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| {
