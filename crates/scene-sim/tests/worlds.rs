@@ -8,7 +8,7 @@ use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::RandomStreamPurpose;
 use wayfix_scene_sim::route::{CircleRoute, Route, RoutePiece};
 use wayfix_scene_sim::world::{
-    CorridorLoop, FloorPlan, Office, OfficeFloor, OtherRobot, PlanarWorld, RoadsideLandmarks, SensorWorld,
+    CorridorLoop, FloorPlan, OfficeFloor, OtherRobot, PlanarWorld, RoadsideLandmarks, SensorWorld,
     UniformLandmarkField,
 };
 use wayfix_sensor_log::{DetectionTarget, TrueLandmark};
@@ -56,23 +56,6 @@ fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
         own_side.into_iter().all(|p| !world.occludes(&at(p.x, -5.0), &p)),
         "a landmark hides behind its own wall"
     );
-}
-
-#[test]
-fn offices_have_corner_posts_and_doors() {
-    let office = Office { n_columns: 3, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.2 };
-    let plan = office.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
-    assert_eq!(plan.landmarks.len(), 4 * 3);
-    assert!(points(&plan).iter().all(|p| {
-        let from_corner = |offset: f64| (offset - (offset / 4.0).round() * 4.0).abs();
-        from_corner(p.x + 6.0) <= 0.2 && from_corner(p.y + 4.0) <= 0.2
-    }));
-    let world = PlanarWorld::new(plan);
-    let at = Vector2::new;
-    let (left, middle, above) = (at(-4.0, -2.0), at(0.0, -2.0), at(0.0, 2.0));
-    assert!(!world.occludes(&left, &middle) && !world.occludes(&middle, &above), "doors are open");
-    assert!(world.occludes(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
-    assert!(world.occludes(&middle, &at(0.0, -5.0)), "nor are outer walls");
 }
 
 #[test]
