@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, laws as general};
 use wayfix_slam_ekf::{
-    AckermannControl, AckermannMotion, LandmarkModel, MotionWithRangeScale, MountedSensor, NewLandmark,
-    OdometryMotion, PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale,
-    RelativePositionSensor, VelocityControl, VelocityMotion, laws,
+    LandmarkModel, MotionWithRangeScale, MountedSensor, NewLandmark, OdometryMotion, PoseWithRangeScale,
+    RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, RelativePositionSensor, VelocityControl,
+    VelocityMotion, laws,
 };
 
 fn poses() -> Vec<Pose2<f64>> {
@@ -99,10 +99,6 @@ fn of_every_motion() {
         ..VelocityMotion::default()
     };
     general::motion(&lossy, &cases).unwrap();
-    let steer = |wheel_speed, steering| AckermannControl { wheel_speed, steering, duration: 0.2 };
-    let driven = [steer(3.0, 0.4), steer(-1.0, -0.2), steer(0.0, 0.3)];
-    let driven: Vec<_> = poses().into_iter().flat_map(|pose| driven.iter().map(move |u| (pose, u))).collect();
-    general::motion(&AckermannMotion::default(), &driven).unwrap();
     let cases: Vec<_> =
         scaled(&poses()).into_iter().flat_map(|state| controls.iter().map(move |u| (state, u))).collect();
     general::motion(&MotionWithRangeScale(lossy), &cases).unwrap();
