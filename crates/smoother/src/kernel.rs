@@ -34,7 +34,7 @@ pub enum Kernel {
 
 impl Kernel {
     /// $`ρ(s)`$ and $`ρ'(s)`$, with $`μ`$ for [`GemanMcClure`](Self::GemanMcClure).
-    pub fn cost_and_weight(self, s: f64, mu: f64) -> (f64, f64) {
+    pub(crate) fn cost_and_weight(self, s: f64, mu: f64) -> (f64, f64) {
         match self {
             Self::Squared => (s, 1.0),
             Self::Huber { k } if s > k * k => (2.0 * k * s.sqrt() - k * k, k / s.sqrt()),

@@ -116,7 +116,7 @@ impl PanoramaDescriptor {
     }
 
     /// Whether two descriptors can be compared.
-    pub fn has_shape_of(&self, other: &Self) -> bool {
+    pub(crate) fn has_shape_of(&self, other: &Self) -> bool {
         self.n_rings == other.n_rings && self.n_harmonics == other.n_harmonics
     }
 
