@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a model that breaks a law fails the test")]
 
-use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
@@ -48,6 +47,7 @@ fn of_every_landmark_model() {
 #[cfg(feature = "lines")]
 #[test]
 fn of_walls() {
+    use approx::assert_abs_diff_eq;
     use wayfix_estimation_traits::Manifold;
     use wayfix_slam_ekf::{Wall, WallLine, WallSensor};
     let line = |(rho, alpha): (f64, f64)| WallLine::new(rho, alpha);
