@@ -2,6 +2,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use common::{Field, FieldView, known, lap};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use rand_chacha::ChaCha8Rng;
@@ -93,7 +94,7 @@ fn a_fix_helps_where_nothing_is_known() {
         PositionFix { position: Vector2::new(3.1, 4.1), covariance: Matrix2::identity() * 0.04, weight: 0.9 };
     let outcome = localizer.update_with(field.view(&pose, &mut rng), &[&fix]).expect("a good fix");
     let estimate = outcome.estimate.expect("the fix says where");
-    assert!((estimate.mean().translation - Vector2::new(3.1, 4.1)).norm() < 1e-9);
+    assert_abs_diff_eq!(estimate.mean().translation, Vector2::new(3.1, 4.1), epsilon = 1e-9);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The learning rules against numbers worked out by hand.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
     AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, PlaceUpdateRule,
@@ -67,17 +68,17 @@ fn what_is_seen_again_gains_weight_and_counts() {
     // Eq. 11 gives each observation the whole share, and counts add.
     assert_eq!(place.count, 2.0);
     // Eq. 13 with normalized counts: the mean of two equal poses is that pose, not its double.
-    assert!((place.gaussian.mean().x() - 5.0).abs() < 1e-12);
+    assert_abs_diff_eq!(place.gaussian.mean().x(), 5.0, epsilon = 1e-12);
 }
 
 #[test]
 fn counts_weigh_the_poses() {
     let map = map_of(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.2)], &published());
     let place = &map.references().values().next().unwrap().places[0];
-    assert!((place.gaussian.mean().x() - 0.05).abs() < 1e-12);
+    assert_abs_diff_eq!(place.gaussian.mean().x(), 0.05, epsilon = 1e-12);
     // Eq. 14: σ² + ¾·0.05² + ¼·0.15².
     let variance = SIGMA * SIGMA + 0.75 * 0.0025 + 0.25 * 0.0225;
-    assert!((place.gaussian.covariance()[(0, 0)] - variance).abs() < 1e-12);
+    assert_abs_diff_eq!(place.gaussian.covariance()[(0, 0)], variance, epsilon = 1e-12);
 }
 
 #[test]
@@ -92,7 +93,7 @@ fn half_a_likeness_teaches_half() {
     let map = map_of(&[(0.0, 0.0), (0.6, 0.0)], &published());
     let gain = 0.5 * similarity(0.6, 1.0);
     assert_eq!(map.len(), 1, "a view within the limit is no reference");
-    assert!((weights(&map)[0][0] - (gain + (1.0 - gain) * 0.5)).abs() < 1e-12);
+    assert_abs_diff_eq!(weights(&map)[0][0], gain + (1.0 - gain) * 0.5, epsilon = 1e-12);
 }
 
 #[test]
@@ -102,7 +103,7 @@ fn missing_view_is_forgotten_only_actively() {
     assert_eq!(active.len(), 1);
     let slow = AppearanceMapParams { forgetting_rate: 0.04, ..published() };
     let active = map_of(&[(0.0, 0.0), (3.0, 0.5)], &slow);
-    assert!((weights(&active)[0][0] - 0.5 * (1.0 - 0.2)).abs() < 1e-12);
+    assert_abs_diff_eq!(weights(&active)[0][0], 0.5 * (1.0 - 0.2), epsilon = 1e-12);
     let passive = AppearanceMapParams { forgetting_mode: ForgettingMode::Passive, ..published() };
     assert_eq!(weights(&map_of(&[(0.0, 0.0), (3.0, 0.5)], &passive))[0], [0.5]);
     let far = map_of(&[(0.0, 0.0), (3.0, 1.1)], &published());
@@ -118,7 +119,7 @@ fn published_uncertainty_is_along_the_axes_of_the_map() {
     let pose = Gaussian::from_sigmas(pose, &Vector3::new(0.3, 0.1, 0.1)).expect("positive");
     map.learn(Tone(3.0), &pose, &params, GATE).expect("a good pose");
     let loss = 0.04 * 0.5 * 2.0 / (2.0 * 0.05_f64.sqrt());
-    assert!((weights(&map)[0][0] - 0.5 * (1.0 - loss)).abs() < 1e-12);
+    assert_abs_diff_eq!(weights(&map)[0][0], 0.5 * (1.0 - loss), epsilon = 1e-12);
 }
 
 #[test]
@@ -127,13 +128,13 @@ fn error_of_a_place_does_not_slow_forgetting() {
         AppearanceMapParams { forgetting_uncertainty: ForgettingUncertainty::AgainstPlace, ..published() };
     // As uncertain as the place itself: at the full rate, b = 0.4 · (1 − 1/2).
     let alike = map_of(&[(0.0, 0.0), (3.0, 0.5)], &params);
-    assert!((weights(&alike)[0][0] - 0.5 * 0.8).abs() < 1e-12);
+    assert_abs_diff_eq!(weights(&alike)[0][0], 0.5 * 0.8, epsilon = 1e-12);
     // σ of 2 m against 0.1 m: σ² = 2 (2 · 2² − 2 · 0.1²).
     let mut map = map_of(&[(0.0, 0.0)], &params);
     let pose = Gaussian::from_sigmas(Pose2::new(0.5, 0.0, 0.0), &Vector3::new(2.0, 2.0, 0.1));
     map.learn(Tone(3.0), &pose.expect("positive"), &params, GATE).expect("a good pose");
     let loss = 0.4 * 0.5 * 2.0 / (2.0 * (2.0 * 4.0 - 2.0 * 0.01_f64)).sqrt();
-    assert!((weights(&map)[0][0] - 0.5 * (1.0 - loss)).abs() < 1e-12);
+    assert_abs_diff_eq!(weights(&map)[0][0], 0.5 * (1.0 - loss), epsilon = 1e-12);
 }
 
 #[test]
@@ -163,7 +164,7 @@ fn residuals_correct_places_without_drawing_them_together() {
         map.learn(Tone(0.2), &at(0.4), &params, GATE).expect("a good pose");
     }
     // The published rule would pull all five towards 0.4 m; a residual of nothing moves nothing.
-    assert!((spread(&map) - before).abs() < 0.02, "from {before} to {}", spread(&map));
+    assert!(abs_diff_eq!(spread(&map), before, epsilon = 0.02), "from {before} to {}", spread(&map));
 }
 
 #[test]

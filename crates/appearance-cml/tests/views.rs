@@ -1,6 +1,7 @@
 //! The laws of descriptors on pictures, and what is refused.
 #![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::abs_diff_eq;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
@@ -110,7 +111,7 @@ fn a_turn_by_less_than_a_column_is_measured() {
     let reference = features.describe(&fine(0)).unwrap();
     for shift in 1..8 {
         let seen = features.describe(&fine(shift)).unwrap().compare(&reference).rotation.to_degrees();
-        assert!((seen + 0.75 * shift as f64).abs() < 0.1, "{shift}: {seen}");
+        assert!(abs_diff_eq!(seen, -0.75 * shift as f64, epsilon = 0.1), "{shift}: {seen}");
     }
 }
 

@@ -5,7 +5,7 @@
 //! | discrete filter | [`DiscreteFilter`] over any [`DiscreteStateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
 //! | features | [`GlobalDescriptor`]: [`ColorMeanStdDescriptor`], [`Fft6Descriptor`], [`DominantGraysDescriptor`], [`IntensityRegionsDescriptor`], [`ConcatenatedDescriptor`], your own; all views of a scene at once |
 //! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteAppearanceModel`]; [`LearnedMotion`]; p-values |
-//! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceLearningParams::online`] |
+//! | normalization | from the whole scene: [`light_match`]; online: [`AppearanceLearningParams::online`] |
 //! | navigation | [`ViewLocalizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
 //! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. Pictures are [`RgbImage`]s of the
@@ -39,4 +39,4 @@ pub use navigation::{
     ActionSelection, NavigationEnvironment, NavigationOutcome, NavigationReport, Navigator, NavigatorParams,
     ShortestPathLengths, ViewLocalizer, ViewLocalizerParams,
 };
-pub use normalization::{LightChange, affine_match, histogram_match, light_match};
+pub use normalization::{LightChange, light_match};

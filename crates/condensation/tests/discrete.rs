@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use proptest::prelude::*;
 use wayfix_condensation::{
     CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, DiscreteStateSpace, GridMove,
@@ -18,7 +19,7 @@ fn predicted(transition: &dyn TransitionModel, belief: &[f64]) -> Vec<f64> {
 
 fn assert_close(got: &[f64], expected: &[f64]) {
     for (state, (a, b)) in got.iter().zip(expected).enumerate() {
-        assert!((a - b).abs() < 1e-12, "state {state}: {a} and {b}");
+        assert!(abs_diff_eq!(a, b, epsilon = 1e-12), "state {state}: {a} and {b}");
     }
 }
 
@@ -115,7 +116,7 @@ proptest! {
             let expected: Vec<f64> = logs.iter().map(|l| (l - best).exp() / sum).collect();
             assert_close(filter.belief(), &expected);
             let evidence = outcome.evidence().unwrap().log_predicted;
-            prop_assert!((evidence - best - sum.ln()).abs() < 1e-9 * (1.0 + evidence.abs()));
+            assert_abs_diff_eq!(evidence - best, sum.ln(), epsilon = 1e-9 * (1.0 + evidence.abs()));
         }
     }
 }
@@ -134,7 +135,7 @@ fn belief_over_many_chunks_stays_a_distribution() {
         filter.predict(&kernel).unwrap();
         let log_likelihoods: Vec<f64> = (0..60_000_usize).map(|s| -1e-3 * s.abs_diff(truth) as f64).collect();
         assert!(filter.update(&log_likelihoods).unwrap().evidence().is_some());
-        assert!((filter.belief().iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(filter.belief().iter().sum::<f64>(), 1.0, epsilon = 1e-12);
     }
     assert!(filter.best().state.abs_diff(truth) <= 300 && filter.entropy() < (60_000_f64).ln());
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use proptest::prelude::*;
 use wayfix_condensation::{
     ColorMeanStdDescriptor, ConcatenatedDescriptor, CondensationError, DiscreteStateSpace,
@@ -37,7 +38,7 @@ fn assert_equal(got: &StateDescriptorTable, expected: &StateDescriptorTable) {
     assert_eq!(got.n_states(), expected.n_states());
     for (state, (a, b)) in got.rows().zip(expected.rows()).enumerate() {
         for (x, y) in a.iter().zip(b) {
-            assert!((x - y).abs() < 1e-9, "state {state}: {a:?} and {b:?}");
+            assert!(abs_diff_eq!(x, y, epsilon = 1e-9), "state {state}: {a:?} and {b:?}");
         }
     }
 }
@@ -75,7 +76,8 @@ proptest! {
             let values = || scene.pixels().map(|pixel| f64::from(pixel[c]));
             let mean = values().sum::<f64>() / n;
             let sigma = (values().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
-            prop_assert!((mean_var[c] - mean).abs() < 1e-9 && (mean_var[c + 3] - sigma).abs() < 1e-9);
+            assert_abs_diff_eq!(mean_var[c], mean, epsilon = 1e-9);
+            assert_abs_diff_eq!(mean_var[c + 3], sigma, epsilon = 1e-9);
         }
         let mut moduli = [0.0; 6];
         Fft6Descriptor.extract(&whole, &mut moduli);
@@ -86,7 +88,7 @@ proptest! {
                 real += f64::from(grey) * angle.cos() / n;
                 imaginary -= f64::from(grey) * angle.sin() / n;
             }
-            prop_assert!((modulus - real.hypot(imaginary)).abs() < 1e-9);
+            assert_abs_diff_eq!(*modulus, real.hypot(imaginary), epsilon = 1e-9);
         }
     }
 }
@@ -104,7 +106,8 @@ fn classes_follow_gain_and_offset() {
     extract(&values, &mut before);
     extract(&brighter, &mut after);
     for k in 0..3 {
-        assert!((after[k] - (0.5 * before[k] + 60.0)).abs() < 1e-9 && after[k + 3] == before[k + 3]);
+        assert_abs_diff_eq!(after[k], 0.5 * before[k] + 60.0, epsilon = 1e-9);
+        assert!(after[k + 3] == before[k + 3]);
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use common::scene;
 use wayfix_condensation::{
     AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, CondensationError, DiscreteStateSpace,
@@ -19,9 +20,13 @@ fn p_value_is_the_chi_squared_tail() {
     let table = StateDescriptorTable::from_rows(&[vec![-1.0, -1.0], vec![1.0, 1.0]]).unwrap();
     let appearance = AppearanceModel::from_spread(table, 1.0).unwrap();
     let off = 2.0_f64.sqrt();
-    assert!((appearance.p_value(1, &[1.0 + off, 1.0 - off]).unwrap() - 0.1353352832366127).abs() < 1e-12);
+    assert_abs_diff_eq!(
+        appearance.p_value(1, &[1.0 + off, 1.0 - off]).unwrap(),
+        0.1353352832366127,
+        epsilon = 1e-12
+    );
     let between = appearance.p_values_between_states().unwrap();
-    assert!((between.mean - (-4.0_f64).exp()).abs() < 1e-12); // two apart in both: d² = 8
+    assert_abs_diff_eq!(between.mean, (-4.0_f64).exp(), epsilon = 1e-12); // two apart in both: d² = 8
     assert!(appearance.p_value(2, &[0.0, 0.0]).is_err() && appearance.p_value(0, &[0.0]).is_err());
 }
 
@@ -50,7 +55,7 @@ fn pictures_of_single_places_can_be_learned() {
     let mut features = [0.0; 6];
     ColorMeanStdDescriptor.extract(&View::whole(&pictures[2]).unwrap(), &mut features);
     assert_eq!(appearance.features(0).unwrap().get(2).unwrap(), features);
-    assert!((appearance.p_value(2, &features).unwrap() - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(appearance.p_value(2, &features).unwrap(), 1.0, epsilon = 1e-12);
     assert!(OneViewPerPicture::new(&[]).is_err() && OneViewPerPicture::new(&[RgbImage::new(5, 0)]).is_err());
 }
 
@@ -65,7 +70,9 @@ fn moves_are_learned_from_a_log() {
     let mut predicted = [0.0; 4];
     log.transition(right, 1.0).unwrap().predict(&[0.5, 0.0, 0.5, 0.0], &mut predicted);
     // (3 + 1) / 5 of the first, and what was never tried goes where it should
-    assert!((predicted[0] - 0.1).abs() < 1e-15 && (predicted[1] - 0.4).abs() < 1e-15 && predicted[3] == 0.5);
+    assert_abs_diff_eq!(predicted[0], 0.1, epsilon = 1e-15);
+    assert_abs_diff_eq!(predicted[1], 0.4, epsilon = 1e-15);
+    assert!(predicted[3] == 0.5);
     assert!(log.record(0, right, 4).is_err() && log.transition(right, 0.0).is_err());
     assert!(log.record(0, GridMove { dx: 5, dy: 0 }, 1).is_err());
     assert_eq!(grid.n_states(), 4);

@@ -4,6 +4,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::sync::Arc;
 
 use common::{Drive, scene};
@@ -13,7 +14,7 @@ use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
     DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
     NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
-    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match, mapped,
+    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped,
     shifted,
 };
 
@@ -65,7 +66,8 @@ const OTHER_LIGHT: LightChange = LightChange { gain: 0.7, offset: 20.0, gamma: 1
 fn every_feature_reaches_every_goal_in_another_light() {
     let learned = scene(240, 176, 3);
     let real = shifted(&OTHER_LIGHT.apply(&learned).unwrap(), 4, 3);
-    let matched = mapped(&real, &histogram_match(&real, &learned));
+    let light = light_match(&real, &learned).unwrap();
+    let matched = mapped(&real, &[light.inverse_table().unwrap(); 3]);
     let features: [&dyn GlobalDescriptor; 3] =
         [&ColorMeanStdDescriptor, &Fft6Descriptor, &DominantGraysDescriptor::default()];
     for (number, feature) in features.into_iter().enumerate() {
@@ -99,7 +101,8 @@ fn light_is_found_together_with_the_place() {
     for seed in 0..5 {
         let (light, _) = trial.run(seed, ActionSelection::Greedy, None).2.disturbance();
         assert!(
-            (light.gain / 0.7 - 1.0).abs() < 0.08 && (light.offset - 20.0).abs() < 8.0,
+            abs_diff_eq!(light.gain / 0.7, 1.0, epsilon = 0.08)
+                && abs_diff_eq!(light.offset, 20.0, epsilon = 8.0),
             "run {seed}: {light:?}"
         );
     }
@@ -145,7 +148,7 @@ fn a_constant_scene_ends_unsure() {
         (NavigationOutcome::Unsure, NavigatorParams::default().max_steps)
     );
     assert!(localizer.belief().iter().all(|p| p.is_finite()));
-    assert!((localizer.belief().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(localizer.belief().iter().sum::<f64>(), 1.0, epsilon = 1e-9);
 }
 
 struct Walk {

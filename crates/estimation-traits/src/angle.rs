@@ -110,9 +110,8 @@ mod tests {
             let angle = f64::from(k) * 0.37;
             let wrapped = wrap_angle(angle);
             assert!(wrapped > -PI && wrapped <= PI, "{angle} wrapped to {wrapped}");
-            assert!(
-                (wrapped.sin() - angle.sin()).abs() < 1e-12 && (wrapped.cos() - angle.cos()).abs() < 1e-12
-            );
+            assert_abs_diff_eq!(wrapped.sin(), angle.sin(), epsilon = 1e-12);
+            assert_abs_diff_eq!(wrapped.cos(), angle.cos(), epsilon = 1e-12);
         }
         assert_eq!(wrap_angle(-PI), PI);
         for odd in [3.0, -3.0, 5.0, -7.0] {

@@ -65,6 +65,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use nalgebra::{Vector1, Vector2};
 
     use super::*;
@@ -76,7 +77,8 @@ mod tests {
             let range = |p: &Vector2<f64>| Vector1::new((p - beacon).norm());
             let jacobian = numerical_jacobian(range, &Vector2::new(offset, offset));
             assert!(
-                (jacobian[(0, 0)] + 0.6).abs() < 1e-4 && (jacobian[(0, 1)] + 0.8).abs() < 1e-4,
+                abs_diff_eq!(jacobian[(0, 0)], -0.6, epsilon = 1e-4)
+                    && abs_diff_eq!(jacobian[(0, 1)], -0.8, epsilon = 1e-4),
                 "{offset}"
             );
         }
@@ -86,7 +88,10 @@ mod tests {
     fn standing_still_has_the_identity_in_single_precision() {
         for offset in [0.0_f32, 1e3, 5e5, 4.6e6, 1e12] {
             let jacobian = numerical_jacobian(|p: &Vector2<f32>| *p, &Vector2::new(offset, -offset));
-            assert!((jacobian - nalgebra::Matrix2::identity()).amax() < 1e-6, "{offset}: {jacobian}");
+            assert!(
+                abs_diff_eq!(jacobian, nalgebra::Matrix2::identity(), epsilon = 1e-6),
+                "{offset}: {jacobian}"
+            );
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What the SVG of a plot shows, measured in the SVG itself.
 
+use approx::abs_diff_eq;
 use wayfix_evaluation::plot::{
     AxisScale, ConsistencyPlot, EstimatedLandmark, LinePlot, MapPlot, PlotSeries, PoseErrorPlot,
     PoseErrorSample, StepTimesPlot, SvgPlot,
@@ -52,12 +53,19 @@ fn isotropic_covariance_draws_a_two_sigma_circle() {
         let (scale_x, scale_y) = pixels_per_meter(&picture, corner);
         // Positions are rounded to a tenth of a pixel at both ends of each side.
         let rounding = 0.2 / f64::min(corner.0, corner.1);
-        assert!((scale_x - scale_y).abs() <= rounding, "{corner:?}: {scale_x} and {scale_y} px per metre");
+        assert!(
+            abs_diff_eq!(scale_x, scale_y, epsilon = rounding),
+            "{corner:?}: {scale_x} and {scale_y} px per metre"
+        );
         let (width, height) = size(&shapes(&picture, "polygon", "ink-3")[0]);
-        assert!((width - height).abs() <= 0.3, "{corner:?}: {width} by {height} px");
+        assert!(abs_diff_eq!(width, height, epsilon = 0.3), "{corner:?}: {width} by {height} px");
         // The longer side gives the scale with fewer rounding errors.
         let scale = if corner.0 > corner.1 { scale_x } else { scale_y };
-        assert!((width - 4.0 * sigma * scale).abs() <= 0.4, "{corner:?}: {width} px for {} m", 4.0 * sigma);
+        assert!(
+            abs_diff_eq!(width, 4.0 * sigma * scale, epsilon = 0.4),
+            "{corner:?}: {width} px for {} m",
+            4.0 * sigma
+        );
     }
 }
 
@@ -68,8 +76,8 @@ fn ellipse_spans_two_sigma_of_each_axis_when_correlated() {
     let (scale_x, scale_y) = pixels_per_meter(&picture, (8.0, 8.0));
     let (width, height) = size(&shapes(&picture, "polygon", "ink-3")[0]);
     // 48 vertices miss the extreme by at most 1 - cos(π/48), 0.2 %.
-    assert!((width / (4.0 * xx.sqrt() * scale_x) - 1.0).abs() < 0.005, "{width}");
-    assert!((height / (4.0 * yy.sqrt() * scale_y) - 1.0).abs() < 0.005, "{height}");
+    assert!(abs_diff_eq!(width / (4.0 * xx.sqrt() * scale_x), 1.0, epsilon = 0.005), "{width}");
+    assert!(abs_diff_eq!(height / (4.0 * yy.sqrt() * scale_y), 1.0, epsilon = 0.005), "{height}");
 }
 
 #[test]
@@ -91,7 +99,7 @@ fn one_sample_among_many_stays_visible() {
     let lines = shapes(&picture, "polyline", "ink-0");
     let (_, height) = size(lines.iter().max_by_key(|line| line.len()).unwrap());
     // From −1 to 9 with 5 % of room above and below, in a panel of 220 px.
-    assert!((height - 220.0 / 1.1).abs() < 0.5, "{height} px");
+    assert!(abs_diff_eq!(height, 220.0 / 1.1, epsilon = 0.5), "{height} px");
 }
 
 /// Every kind of plot with the same numbers in every place.

@@ -1,11 +1,11 @@
 //! Reproduction of the papers: plans of runs on stored logs and on public recordings, their bounds, and a report of all.
 //!
-//! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots; [`color`],
-//! [`cml`], [`films`], [`corridor`], [`simplification`] and [`venues`] are those of one system each.
+//! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots; `color`,
+//! `cml`, [`films`], [`corridor`], `simplification` and [`venues`] are those of one system each.
 
 pub mod cli;
-pub mod cml;
-pub mod color;
+mod cml;
+mod color;
 pub mod consistency;
 pub mod corridor;
 mod error_quantiles;
@@ -13,7 +13,7 @@ pub mod films;
 pub mod fixtures;
 pub mod monobot;
 pub mod regress;
-pub mod simplification;
+mod simplification;
 mod thinned_positions;
 pub mod venues;
 mod views_paper;

@@ -18,7 +18,7 @@ type Chain = Vec<Vector2<f64>>;
 ///
 /// # Errors
 /// Returns an error if a chain is invalid.
-pub fn simplification(n_polylines: u32, seed: u64) -> Result<ReportRun> {
+pub(crate) fn simplification(n_polylines: u32, seed: u64) -> Result<ReportRun> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (mut n_differ, mut kept, mut points, mut excess) = (0, 0, 0, f64::NEG_INFINITY);
     for k in 0..n_polylines {

@@ -69,6 +69,7 @@ impl ThinnedPositions {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use wayfix_estimation_traits::Pose2;
     use wayfix_sensor_log::TruePosition;
 
@@ -113,6 +114,6 @@ mod tests {
         assert_eq!((errors.len(), records.len()), (1999, 3999));
         let variance = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
         // Six standard deviations of the variance of 1999 samples.
-        assert!((variance / 4.0 - 1.0).abs() < 6.0 * (2.0 / 1999.0_f64).sqrt(), "{variance}");
+        assert!(abs_diff_eq!(variance / 4.0, 1.0, epsilon = 6.0 * (2.0 / 1999.0_f64).sqrt()), "{variance}");
     }
 }

@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 
 use common::experiments;
@@ -74,9 +75,9 @@ fn moves_saved_are_counted_pair_by_pair() {
     // Two moves more on the even drives, none on the odd ones: 1 on the mean, and a paired variance of 10 / 9.
     greedy.trials.iter_mut().step_by(2).for_each(|trial| trial.report.steps += 2);
     let metrics = views::compare_choices(&greedy, &informed);
-    assert!((figure(&metrics, "steps_saved_by_informed_mean") - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(figure(&metrics, "steps_saved_by_informed_mean"), 1.0, epsilon = 1e-12);
     let half_width = 2.262 * (10.0_f64 / 9.0 / 10.0).sqrt(); // t(0.975, 9) from a table
-    assert!((figure(&metrics, "steps_saved_by_informed_low95") - (1.0 - half_width)).abs() < 1e-3);
+    assert_abs_diff_eq!(figure(&metrics, "steps_saved_by_informed_low95"), 1.0 - half_width, epsilon = 1e-3);
     assert_eq!(
         figure(&metrics, "steps_to_certainty_saved_by_informed_mean"),
         0.0,
@@ -87,7 +88,7 @@ fn moves_saved_are_counted_pair_by_pair() {
     let before = informed.trials[0].report.steps_to_certainty.unwrap();
     let more = (greedy.trials[0].report.steps - before) as f64 / 10.0;
     let metrics = views::compare_choices(&greedy, &informed);
-    assert!((figure(&metrics, "steps_to_certainty_saved_by_informed_mean") - more).abs() < 1e-12);
+    assert_abs_diff_eq!(figure(&metrics, "steps_to_certainty_saved_by_informed_mean"), more, epsilon = 1e-12);
 }
 
 const PLAN: &str = r#"

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use approx::assert_abs_diff_eq;
 use wayfix_evaluation::report::Metric;
 use wayfix_experiments::films::{FilmTrackingScore, table};
 use wayfix_scene_sim::film::{FilmFrame, OcclusionEvent, SyntheticFilm};
@@ -33,7 +34,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
     assert_eq!(score.iou[0], 1.0);
     // The box holds every pixel of the shell, so that the overlap is the ratio of the areas.
     let ratio = frame.target.area() as f64 / boxed.bounding_box.area();
-    assert!((score.iou[1] - ratio).abs() < 1e-12, "{} {ratio}", score.iou[1]);
+    assert_abs_diff_eq!(score.iou[1], ratio, epsilon = 1e-12);
     assert!(score.center_error[0] < 1e-12 && score.center_error[1] < 2.0);
 }
 

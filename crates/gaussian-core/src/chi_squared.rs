@@ -102,7 +102,7 @@ fn lower_tail(dof: f64, probability: f64) -> f64 {
     (0.5 * (low + high)).exp()
 }
 
-pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
+fn check_probability(value: f64) -> Result<(), GaussianError> {
     if value > 0.0 && value < 1.0 {
         return Ok(());
     }
@@ -112,13 +112,14 @@ pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     #[test]
     fn lower_tail_with_two_degrees_is_the_exponential() {
         for probability in [1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.3] {
             let expected = -2.0 * f64::ln_1p(-probability);
             let found = quantile(2, probability).unwrap();
-            assert!((found / expected - 1.0).abs() < 1e-9, "{probability}: {found} {expected}");
+            assert!(abs_diff_eq!(found / expected, 1.0, epsilon = 1e-9), "{probability}: {found} {expected}");
         }
     }
 
@@ -132,7 +133,10 @@ mod tests {
             (3, 1e-3, 2.4297585815692657e-2),
         ] {
             let found = quantile(dof, probability).unwrap();
-            assert!((found / expected - 1.0).abs() < 1e-6, "{dof} {probability}: {found} {expected}");
+            assert!(
+                abs_diff_eq!(found / expected, 1.0, epsilon = 1e-6),
+                "{dof} {probability}: {found} {expected}"
+            );
         }
     }
 }

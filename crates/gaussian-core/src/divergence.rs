@@ -59,12 +59,4 @@ where
             to_f64(cholesky("own", &p1)?.ln_determinant()) + to_f64(cholesky("other", &p2)?.ln_determinant());
         Ok(0.125 * joint.squared_distance + 0.5 * (joint.log_determinant - 0.5 * log_determinants))
     }
-
-    /// The Bhattacharyya coefficient $`\int \sqrt{p q} \in (0, 1]`$: the overlap of two Gaussians.
-    ///
-    /// # Errors
-    /// As for [`kl_divergence`](Self::kl_divergence).
-    pub fn bhattacharyya_coefficient(&self, other: &Self) -> Result<f64, GaussianError> {
-        self.bhattacharyya_distance(other).map(|distance| (-distance).exp())
-    }
 }

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix2, RealField, Vector2};
 
-use crate::{GaussianError, check_covariance, chi_squared::check_probability};
+use crate::{GaussianError, check_covariance};
 
 /// The curve of equal density of a planar Gaussian.
 ///
@@ -47,15 +47,6 @@ impl<T: RealField + Copy> CovarianceEllipse<T> {
             semi_minor: smaller.sqrt() * k,
             angle: (b + b).atan2(a - d) * half,
         })
-    }
-
-    /// The ellipse that holds `probability` of the mass: $`\sqrt{-2 \log(1 - p)}`$ sigmas out.
-    ///
-    /// # Errors
-    /// Returns an error if the covariance is not symmetric positive definite or `probability` is not between 0 and 1 (both excluded).
-    pub fn at_probability(covariance: &Matrix2<T>, probability: f64) -> Result<Self, GaussianError> {
-        check_probability(probability)?;
-        Self::at_sigmas(covariance, (-2.0 * (-probability).ln_1p()).sqrt())
     }
 
     /// A closed polyline of `segments` chords round `centre`: the last point is the first.

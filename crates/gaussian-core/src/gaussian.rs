@@ -1,7 +1,7 @@
 use nalgebra::{ComplexField, Const, DefaultAllocator, Dim, RealField};
 use wayfix_estimation_traits::{Manifold, StateAlloc, Tangent, TangentMatrix, to_f64};
 
-use crate::{GaussianError, check_covariance, cholesky, symmetrize};
+use crate::{GaussianError, check_covariance, symmetrize};
 
 /// A normal distribution over any manifold: $`x ∼ μ ⊞ N(0, Σ)`$.
 ///
@@ -65,19 +65,6 @@ where
         Self::new(mean, TangentMatrix::<X>::from_diagonal(&variances))
     }
 
-    /// The covariance given by its inverse, the information matrix $`Λ = Σ^{-1}`$.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new), of the information matrix.
-    pub fn from_information(mean: X, information: &TangentMatrix<X>) -> Result<Self, GaussianError> {
-        check_dimension("information", mean.dim().value(), information.nrows())?;
-        check_covariance("information", information)?;
-        let dim = mean.dim();
-        let covariance =
-            cholesky("information", information)?.solve(&TangentMatrix::<X>::identity_generic(dim, dim));
-        Self::new(mean, covariance)
-    }
-
     /// The mean $`μ`$.
     pub fn mean(&self) -> &X {
         &self.mean
@@ -119,7 +106,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
+    use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
     use wayfix_estimation_traits::{Angle, Pose2};
 
     #[test]
@@ -136,15 +123,6 @@ mod tests {
             Gaussian::new(DVector::from_element(3, 0.0), DMatrix::identity(2, 2)),
             Err(GaussianError::Dimension { what: "covariance", expected: 3, got: 2 })
         );
-    }
-
-    #[test]
-    fn information_and_covariance_are_inverse() {
-        let covariance = Matrix3::new(4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0);
-        let information = covariance.try_inverse().unwrap();
-        let gaussian = Gaussian::from_information(Vector3::zeros(), &information).unwrap();
-        // Error of solving: condition number (about 3) times a few rounding errors.
-        assert!((gaussian.covariance() - covariance).norm() < 1e-14 * covariance.norm());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Angle;
 use wayfix_gaussian_core::{
@@ -40,11 +40,11 @@ fn products_and_moments() {
     let (p, q) = gaussians();
     let product = p.product(&q).unwrap();
     let mean = Vector3::new(0.7501610166342568, 0.20366746349257467, 0.017265937550317592);
-    assert!((product.mean() - mean).norm() < ROUNDING);
+    assert_abs_diff_eq!(*product.mean(), mean, epsilon = ROUNDING);
     let moments = GaussianMixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap().moments().unwrap();
     let covariance = Matrix3::new(2.81, -0.54, 0.535, -0.54, 3.49, -0.605, 0.535, -0.605, 4.5725);
-    assert!((moments.mean() - Vector3::new(0.3, 0.1, -0.55)).norm() < ROUNDING);
-    assert!((moments.covariance() - covariance).norm() < ROUNDING);
+    assert_abs_diff_eq!(*moments.mean(), Vector3::new(0.3, 0.1, -0.55), epsilon = ROUNDING);
+    assert_abs_diff_eq!(*moments.covariance(), covariance, epsilon = ROUNDING);
 }
 
 #[test]
@@ -62,8 +62,15 @@ fn intersection_weights_are_those_of_a_scalar_minimizer() {
         };
         // The gap bounds the criterion (times the dimension for the determinant); the weight follows by its square root.
         assert!(fused.optimality_gap <= 1e-7);
-        assert!((got - value).abs() < 3e-7 * value.max(1.0), "{criterion:?}: {got} against {value}");
-        assert!((fused.weights[0] - weight).abs() < 1e-3, "{criterion:?}: weight {}", fused.weights[0]);
+        assert!(
+            abs_diff_eq!(got, value, epsilon = 3e-7 * f64::max(value, 1.0)),
+            "{criterion:?}: {got} against {value}"
+        );
+        assert!(
+            abs_diff_eq!(fused.weights[0], weight, epsilon = 1e-3),
+            "{criterion:?}: weight {}",
+            fused.weights[0]
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3, dvector};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Manifold, Pose2};
@@ -59,8 +60,8 @@ proptest! {
         let reduced = if west { mixture.reduce_west(2) } else { mixture.reduce_runnalls(2) }.unwrap();
         let after = reduced.moments().unwrap();
         prop_assert_eq!(reduced.len(), 2);
-        prop_assert!((after.mean() - before.mean()).norm() < 1e-11);
-        prop_assert!((after.covariance() - before.covariance()).norm() < 1e-11 * before.covariance().norm());
+        assert_abs_diff_eq!(after.mean(), before.mean(), epsilon = 1e-11);
+        assert_abs_diff_eq!(after.covariance(), before.covariance(), epsilon = 1e-11 * before.covariance().norm());
     }
 
     #[test]
@@ -69,7 +70,7 @@ proptest! {
         let whole = joint.log_density(&dvector![w[0], v, w[1]]).unwrap();
         let marginal = joint.marginal(&[1]).unwrap().log_density(&dvector![v]).unwrap();
         let conditional = joint.conditional(&[1], &dvector![v]).unwrap().log_density(&dvector![w[0], w[1]]).unwrap();
-        prop_assert!((marginal + conditional - whole).abs() < 1e-11 * whole.abs().max(1.0));
+        assert_abs_diff_eq!(marginal + conditional, whole, epsilon = 1e-11 * whole.abs().max(1.0));
     }
 
     #[test]
@@ -79,9 +80,9 @@ proptest! {
         let a = SMatrix::<f64, 2, 3>::from_row_slice(&entries);
         let params = UnscentedParams { alpha, ..UnscentedParams::default() };
         let transformed = UnscentedTransform::new(&g, |x: &Vector3<f64>| a * x, &params).unwrap();
-        prop_assert!((transformed.mean - a * g.mean()).norm() < 1e-11);
-        prop_assert!((transformed.covariance - a * g.covariance() * a.transpose()).norm() < 1e-10);
-        prop_assert!((transformed.cross_covariance - g.covariance() * a.transpose()).norm() < 1e-10);
+        assert_abs_diff_eq!(transformed.mean, a * g.mean(), epsilon = 1e-11);
+        assert_abs_diff_eq!(transformed.covariance, a * g.covariance() * a.transpose(), epsilon = 1e-10);
+        assert_abs_diff_eq!(transformed.cross_covariance, g.covariance() * a.transpose(), epsilon = 1e-10);
     }
 
     #[test]
@@ -90,7 +91,7 @@ proptest! {
         let (pq, qp) = (p.product(&q).unwrap(), q.product(&p).unwrap());
         // Both stop within 1.5e-8 sigma of the same mode.
         prop_assert!(pq.mean().local(qp.mean()).norm() < 1e-6);
-        prop_assert!((pq.covariance() - qp.covariance()).norm() < 1e-6 * pq.covariance().norm());
+        assert_abs_diff_eq!(pq.covariance(), qp.covariance(), epsilon = 1e-6 * pq.covariance().norm());
         prop_assert!(pq.covariance().trace() <= p.covariance().trace() + 1e-9, "news made a pose less certain");
     }
 
@@ -131,7 +132,6 @@ fn intersection_of_many_leaves_out_what_adds_nothing() {
     let fused =
         covariance_intersection(&[sigmas(1.0), sigmas(3.0), sigmas(2.0)], IntersectionCriterion::Trace)
             .unwrap();
-    assert!(
-        fused.weights[0] > 0.999_999 && (fused.gaussian.covariance() - Matrix3::identity()).norm() < 1e-6
-    );
+    assert_abs_diff_eq!(*fused.gaussian.covariance(), Matrix3::identity(), epsilon = 1e-6);
+    assert!(fused.weights[0] > 0.999_999);
 }

@@ -1,6 +1,7 @@
 //! False alarms and delays over Gaussian measurements, beside the known values of the tests.
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::abs_diff_eq;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
@@ -65,7 +66,10 @@ fn cusum_has_the_run_lengths_of_siegmund() {
         let (measured, interval) = cusum(mean, threshold);
         let known = siegmund(mean - SHIFT / 2.0, threshold);
         // Siegmund's approximation is good to a few per cent.
-        assert!((measured - known).abs() < interval + 0.03 * known, "{measured} ± {interval}, known {known}");
+        assert!(
+            abs_diff_eq!(measured, known, epsilon = interval + 0.03 * known),
+            "{measured} ± {interval}, known {known}"
+        );
     }
 }
 
@@ -87,7 +91,7 @@ fn distance_between_false_alarms_keeps_its_bound() {
         // Without overshoot the bound is exact; the overshoot of normal increments is exp(0.583 δ). [Pollak 1987]
         let known = threshold * (0.583 * SHIFT).exp();
         assert!(
-            (measured - known).abs() < interval + 0.05 * known,
+            abs_diff_eq!(measured, known, epsilon = interval + 0.05 * known),
             "{measured} ± {interval} m, known {known} m"
         );
     }
@@ -99,7 +103,10 @@ fn delay_grows_with_the_logarithm_of_the_threshold() {
     let delays = [1.0, 0.01].map(|rate| shiryaev_roberts(SHIFT, 1.0, rate));
     let [(short, a), (long, b)] = delays;
     let known = 100_f64.ln() / (SHIFT * SHIFT / 2.0);
-    assert!((long - short - known).abs() < a + b, "{short} ± {a} and {long} ± {b} measurements");
+    assert!(
+        abs_diff_eq!(long - short, known, epsilon = a + b),
+        "{short} ± {a} and {long} ± {b} measurements"
+    );
 }
 
 #[test]
@@ -121,7 +128,10 @@ fn ratio_test_keeps_its_error_rate_for_any_length() {
     assert!(n_wrong > 0 && (n_wrong as f64) < bound + 2.0 * bound.sqrt(), "{n_wrong} of {N_RUNS}");
     // Wald: about -ln RATE / I measurements, I = δ²/2, and the overshoot of 0.583 δ at the bound.
     let known = (-RATE.ln() + 0.583 * SHIFT) / (SHIFT * SHIFT / 2.0);
-    assert!((length - known).abs() < interval + 0.1 * known, "{length} ± {interval}, known {known}");
+    assert!(
+        abs_diff_eq!(length, known, epsilon = interval + 0.1 * known),
+        "{length} ± {interval}, known {known}"
+    );
     assert!(ProbabilityRatioTest::from_error_rate(0.0).is_err());
     let mut test = fresh.with_sum(f64::INFINITY).unwrap();
     assert!(test.observe(f64::NEG_INFINITY).is_err() && test.verdict() == RatioVerdict::Second);

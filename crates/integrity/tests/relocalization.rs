@@ -1,6 +1,7 @@
 //! A robot in a corridor of cells that is moved, and one that is not.
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::assert_abs_diff_eq;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
@@ -113,7 +114,7 @@ fn odds_are_inverted_when_hypotheses_change_places() {
     relocalization.observe(0.0, |_| 15.0).unwrap();
     let moved = relocalization.probability();
     assert!(relocalization.decide(&mut present));
-    assert!((relocalization.probability() - (1.0 - moved)).abs() < 1e-12);
+    assert_abs_diff_eq!(relocalization.probability(), 1.0 - moved, epsilon = 1e-12);
 }
 
 #[test]
@@ -133,7 +134,7 @@ fn search_alone_makes_the_odds_even_at_most() {
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
     let found = RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 1000.0 };
     relocalization.propose([found]).unwrap();
-    assert!((relocalization.probability() - 0.5).abs() < 1e-12);
+    assert_abs_diff_eq!(relocalization.probability(), 0.5, epsilon = 1e-12);
     assert!(!relocalization.decide(&mut 0));
 }
 
@@ -148,10 +149,10 @@ fn all_proposals_of_a_search_share_even_odds() {
     relocalization
         .propose([found(1, 50.0), found(2, 50.0 - 3_f64.ln()), found(3, 50.0 - 3_f64.ln())])
         .unwrap();
-    assert!((relocalization.probability() - 0.5).abs() < 1e-12);
+    assert_abs_diff_eq!(relocalization.probability(), 0.5, epsilon = 1e-12);
     // They keep their ratios: 3 to 1 to 1.
     let [best, other, _] = relocalization.alternatives() else { panic!("three") };
-    assert!((best.statistic() / other.statistic() - 3.0).abs() < 1e-9);
+    assert_abs_diff_eq!(best.statistic() / other.statistic(), 3.0, epsilon = 1e-9);
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn unknown_start_is_decided_at_even_odds() {
     relocalization.start([(1, -1.0), (2, -2.0), (3, -5.0)]).unwrap();
     assert_eq!(relocalization.alternatives().len(), 2);
     let odds = (-1_f64).exp() + (-2_f64).exp();
-    assert!((relocalization.probability() - odds / (1.0 + odds)).abs() < 1e-12);
+    assert_abs_diff_eq!(relocalization.probability(), odds / (1.0 + odds), epsilon = 1e-12);
     assert!(!relocalization.decide(&mut present));
     relocalization.observe(0.0, |hypothesis| if *hypothesis == 1 { 1.5 } else { 0.0 }).unwrap();
     assert!(relocalization.decide(&mut present) && present == 1);

@@ -207,6 +207,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Matrix2, Matrix3, Vector3};
 
     #[test]
@@ -215,7 +216,7 @@ mod tests {
             let direction = Vector3::new(0.005, 0.1, 1.0) * scale;
             let noise: Matrix3<f64> = direction * direction.transpose();
             let factor = motion_noise(&noise, 3).unwrap();
-            assert!((factor * factor.transpose() - noise).norm() <= 1e-14 * noise.norm());
+            assert_abs_diff_eq!(factor * factor.transpose(), noise, epsilon = 1e-14 * noise.norm());
         }
         assert_eq!(motion_noise(&Matrix2::<f32>::zeros(), 2).unwrap(), Matrix2::zeros());
     }

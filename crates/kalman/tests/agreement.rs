@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use common::{constant_velocity, dynamic, position_sensor, track_prior};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x4, Vector2, Vector4};
 use wayfix_estimation_traits::Manifold;
@@ -54,18 +55,26 @@ fn agrees<F: KalmanAlgorithm<Vector4<f64>>>(form: F) {
         if let Some(z) = measurement(k) {
             let innovation = filter.update(&sensor, &z).unwrap();
             let reference = likelihoods.next().unwrap();
-            assert!((innovation.log_likelihood() - reference).abs() < ROUNDING * reference.abs().max(1.0));
+            assert_abs_diff_eq!(
+                innovation.log_likelihood(),
+                reference,
+                epsilon = ROUNDING * reference.abs().max(1.0)
+            );
         }
         let estimate = filter.estimate();
         let scale = expected.covariance().norm();
         assert!(
-            (estimate.mean() - expected.mean()).norm() < ROUNDING * expected.mean().norm().max(1.0),
+            abs_diff_eq!(
+                estimate.mean(),
+                expected.mean(),
+                epsilon = ROUNDING * expected.mean().norm().max(1.0)
+            ),
             "mean at step {k}: {} against {}",
             estimate.mean(),
             expected.mean()
         );
         assert!(
-            (estimate.covariance() - expected.covariance()).norm() < ROUNDING * scale,
+            abs_diff_eq!(estimate.covariance(), expected.covariance(), epsilon = ROUNDING * scale),
             "covariance at {k}"
         );
     }
@@ -108,9 +117,10 @@ fn the_plain_update_is_the_update() {
         if let Some(z) = measurement(k) {
             filter.update_plain(&sensor, &z).unwrap();
         }
-        assert!(
-            (filter.estimate().covariance() - expected.covariance()).norm()
-                < ROUNDING * expected.covariance().norm()
+        assert_abs_diff_eq!(
+            filter.estimate().covariance(),
+            expected.covariance(),
+            epsilon = ROUNDING * expected.covariance().norm()
         );
     }
 }
@@ -127,12 +137,17 @@ fn dynamic_sizes_give_what_static_sizes_give() {
             filter.update(&sensor, &DVector::from_column_slice(z.as_slice())).unwrap();
         }
         let estimate = filter.estimate();
-        assert!(
-            (DVector::from_column_slice(expected.mean().as_slice()) - estimate.mean()).norm()
-                < ROUNDING * expected.mean().norm().max(1.0)
+        assert_abs_diff_eq!(
+            DVector::from_column_slice(expected.mean().as_slice()),
+            estimate.mean(),
+            epsilon = ROUNDING * expected.mean().norm().max(1.0)
         );
         let covariance = DMatrix::from_column_slice(4, 4, expected.covariance().as_slice());
-        assert!((covariance - estimate.covariance()).norm() < ROUNDING * expected.covariance().norm());
+        assert_abs_diff_eq!(
+            covariance,
+            estimate.covariance(),
+            epsilon = ROUNDING * expected.covariance().norm()
+        );
     }
 }
 

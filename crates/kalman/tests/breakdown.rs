@@ -6,6 +6,7 @@
 
 mod common;
 
+use approx::abs_diff_eq;
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, RealField, Vector2, Vector4};
 use wayfix_gaussian_core::{Gaussian, GaussianError};
 use wayfix_kalman::{
@@ -104,7 +105,7 @@ fn the_square_root_form_is_not_only_positive_but_right() {
     let velocity = 1e-10 / (0.01 * n * (n * n - 1.0) / 12.0);
     let found = f64::from(filter.estimate().covariance()[(2, 2)]);
     // 2000 steps of some six roundings each, all of one sign at worst: 2000 × 6 × 6e-8 = 7e-4; squaring the factor doubles it.
-    assert!((found / velocity - 1.0).abs() < 1.5e-3, "{found:e} against {velocity:e}");
+    assert!(abs_diff_eq!(found / velocity, 1.0, epsilon = 1.5e-3), "{found:e} against {velocity:e}");
 }
 
 #[test]

@@ -25,7 +25,11 @@ fn an_innovation_of_any_scale_has_its_gain() {
         let error = (innovation.gain() - Matrix2::identity() * 0.5).amax();
         assert!(error < 10.0 * f64::EPSILON, "1e{exponent}: {error:e}");
         let root = innovation.factor().l();
-        assert!((root * root.transpose() - covariance).amax() < 10.0 * f64::EPSILON * covariance.amax());
+        assert_abs_diff_eq!(
+            root * root.transpose(),
+            covariance,
+            epsilon = 10.0 * f64::EPSILON * covariance.amax()
+        );
         // ln N(0; 0, S) = -ln 2π - ½ ln(1.75 s²).
         let expected = -std::f64::consts::TAU.ln() - 0.5 * 1.75_f64.ln() - f64::from(exponent) * 10_f64.ln();
         assert_abs_diff_eq!(innovation.log_likelihood(), expected, epsilon = 1e-13 * expected.abs().max(1.0));

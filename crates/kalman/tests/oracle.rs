@@ -54,8 +54,12 @@ fn the_kalman_filter_gives_filterpys_figures() {
         filter.predict(None).unwrap();
         log_likelihood = filter.update(&sensor(), &measurement(k)).unwrap().log_likelihood();
     }
-    assert!((filter.estimate().mean() - Vector4::from(MEAN)).norm() < ROUNDING * 10.0);
-    assert!((filter.estimate().covariance() - Matrix4::from_row_slice(&COVARIANCE)).norm() < ROUNDING);
+    assert_abs_diff_eq!(*filter.estimate().mean(), Vector4::from(MEAN), epsilon = ROUNDING * 10.0);
+    assert_abs_diff_eq!(
+        *filter.estimate().covariance(),
+        Matrix4::from_row_slice(&COVARIANCE),
+        epsilon = ROUNDING
+    );
     assert_abs_diff_eq!(log_likelihood, LOG_LIKELIHOOD, epsilon = ROUNDING);
 }
 
@@ -89,8 +93,12 @@ fn the_imm_gives_filterpys_figures() {
         filter.update(&sensor(), &measurement(k)).unwrap();
     }
     let estimate = filter.estimate().unwrap();
-    assert!((estimate.mean() - Vector4::from(MEAN)).norm() < ROUNDING * 10.0);
-    assert!((estimate.covariance() - Matrix4::from_row_slice(&COVARIANCE)).norm() < ROUNDING * 10.0);
+    assert_abs_diff_eq!(*estimate.mean(), Vector4::from(MEAN), epsilon = ROUNDING * 10.0);
+    assert_abs_diff_eq!(
+        *estimate.covariance(),
+        Matrix4::from_row_slice(&COVARIANCE),
+        epsilon = ROUNDING * 10.0
+    );
     assert_abs_diff_eq!(filter.model_probabilities()[0], PROBABILITIES[0], epsilon = ROUNDING);
 }
 
@@ -123,6 +131,10 @@ fn the_unscented_filter_gives_filterpys_figures() {
     }
     // Sigma points depend on which square root of P is taken once measurements are curved: filterpy's upper factor's rows are our lower
     // factor's columns, so rounding is all that is left.
-    assert!((filter.estimate().mean() - Vector2::from(MEAN)).norm() < ROUNDING);
-    assert!((filter.estimate().covariance() - Matrix2::from_row_slice(&COVARIANCE)).norm() < ROUNDING);
+    assert_abs_diff_eq!(*filter.estimate().mean(), Vector2::from(MEAN), epsilon = ROUNDING);
+    assert_abs_diff_eq!(
+        *filter.estimate().covariance(),
+        Matrix2::from_row_slice(&COVARIANCE),
+        epsilon = ROUNDING
+    );
 }

@@ -171,8 +171,12 @@ fn with_one_model_both_are_the_kalman_filter() {
         gpb2.update(&sensor(), z).unwrap();
         // One component's moments are its own, up to the rounding of weights that sum to one.
         for other in [imm.estimate().unwrap(), gpb2.estimate().unwrap()] {
-            assert!((other.mean() - plain.estimate().mean()).norm() < 1e-12 * plain.estimate().mean().norm());
-            assert!((other.covariance() - plain.estimate().covariance()).norm() < 1e-12);
+            assert_abs_diff_eq!(
+                other.mean(),
+                plain.estimate().mean(),
+                epsilon = 1e-12 * plain.estimate().mean().norm()
+            );
+            assert_abs_diff_eq!(other.covariance(), plain.estimate().covariance(), epsilon = 1e-12);
         }
     }
 }
@@ -212,7 +216,7 @@ fn gpb2_is_exact_over_two_steps() {
     for (model, weight) in weights.iter().enumerate() {
         assert_abs_diff_eq!(filter.model_probabilities()[model], weight / total, epsilon = 1e-12);
     }
-    assert!((filter.estimate().unwrap().mean() - mean / total).norm() < 1e-12 * 10.0);
+    assert_abs_diff_eq!(*filter.estimate().unwrap().mean(), mean / total, epsilon = 1e-12 * 10.0);
 }
 
 /// A planar robot that drives straight or turns.

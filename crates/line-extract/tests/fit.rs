@@ -1,5 +1,6 @@
 //! Fits of points that are hardly a line, or none.
 
+use approx::assert_abs_diff_eq;
 use wayfix_line_extract::nalgebra::{Matrix2, Vector2};
 use wayfix_line_extract::{HessianLine, LineEstimate, LineExtractionError, fit_line};
 
@@ -58,8 +59,12 @@ fn the_same_points_elsewhere_give_the_same_line_elsewhere() {
         let line = HessianLine::new(here.line.rho() + here.line.normal().dot(&shift), here.line.alpha());
         let expected = LineEstimate { line, covariance: jacobian * here.covariance * jacobian.transpose() };
         // Coordinates of 2e6 m have a resolution of 2e-10 m, over 3 m.
-        assert!((there.line.alpha() - expected.line.alpha()).abs() < 1e-9);
-        assert!((there.covariance - expected.covariance).norm() < 1e-6 * expected.covariance.norm());
+        assert_abs_diff_eq!(there.line.alpha(), expected.line.alpha(), epsilon = 1e-9);
+        assert_abs_diff_eq!(
+            there.covariance,
+            expected.covariance,
+            epsilon = 1e-6 * expected.covariance.norm()
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::assert_abs_diff_eq;
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -101,7 +102,7 @@ fn beams_that_turn_clockwise_see_the_same() {
     assert_eq!(there.segments.len(), 3);
     for (a, b) in there.segments.iter().zip(back.segments.iter().rev()) {
         // A corner's point goes to the wall after it, which is the other one here; it is within the gate of 3 σ.
-        assert!((a.estimate.line.rho() - b.estimate.line.rho()).abs() < 0.03);
+        assert_abs_diff_eq!(a.estimate.line.rho(), b.estimate.line.rho(), epsilon = 0.03);
         assert!((a.start - b.start).norm() < 0.2 && (a.end - b.end).norm() < 0.2, "ends keep their order");
     }
 }
@@ -126,7 +127,8 @@ fn moving_sensor_sees_the_walls_from_the_first_beam() {
     for (a, b) in moving.segments.iter().zip(&at_rest.segments) {
         // Which wall a corner's point belongs to is another matter: that is worth a millimetre.
         let (a, b) = (a.estimate.line, b.estimate.line);
-        assert!((a.rho() - b.rho()).abs() < 1e-3 && (a.alpha() - b.alpha()).abs() < 1e-3, "{a:?} {b:?}");
+        assert_abs_diff_eq!(a.rho(), b.rho(), epsilon = 1e-3);
+        assert_abs_diff_eq!(a.alpha(), b.alpha(), epsilon = 1e-3);
     }
     let nan = Isometry2::new(Vector2::new(f64::NAN, 0.0), 0.0);
     let error = extractor.extract_deskewed(&scan_of(laser, &ranges), Some(&nan)).expect_err("no motion");
@@ -140,7 +142,7 @@ fn a_wall_behind_a_post_is_one_and_across_a_door_two() {
     let door = [wall(4.0, -3.0, 4.0, -0.5), wall(4.0, 0.5, 4.0, 3.0)];
     let seen = see(laser, &behind_a_post, &LineExtractionParams::default());
     assert_eq!(seen.segments.len(), 1, "{seen:#?}"); // the post itself is shorter than a wall
-    assert!((seen.segments[0].length() - 6.0).abs() < 0.2);
+    assert_abs_diff_eq!(seen.segments[0].length(), 6.0, epsilon = 0.2);
     let seen = see(laser, &door, &LineExtractionParams::default());
     assert_eq!(seen.segments.len(), 2, "{seen:#?}");
     let seen =
@@ -177,7 +179,8 @@ fn every_invalid_range_is_counted_once_and_moves_nothing() {
     );
     assert_eq!((counts.skipped(), seen.segments.len(), seen.segments[0].n_points), (8, 1, 173));
     let line = seen.segments[0].estimate.line;
-    assert!((line.rho() - 2.0).abs() < 1e-9 && line.alpha().abs() < 1e-9);
+    assert_abs_diff_eq!(line.rho(), 2.0, epsilon = 1e-9);
+    assert!(line.alpha().abs() < 1e-9);
 }
 
 #[test]

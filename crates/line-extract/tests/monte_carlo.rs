@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::abs_diff_eq;
 use std::f64::consts::PI;
 
 use rand_chacha::ChaCha8Rng;
@@ -57,11 +58,11 @@ fn the_covariance_of_a_fit_is_that_of_its_errors() {
         // The mean of N chi-squared numbers with 2 degrees of freedom is 2 with deviation 2/√N; four of those, and 3 % for
         // what is of second order in the noise.
         let (mean, bound) = (nees / RUNS as f64, 8.0 / (RUNS as f64).sqrt() + 0.06);
-        assert!((mean - 2.0).abs() < bound, "NEES {mean} at ρ {rho}, α {alpha}, bound {bound}");
+        assert!(abs_diff_eq!(mean, 2.0, epsilon = bound), "NEES {mean} at ρ {rho}, α {alpha}, bound {bound}");
         // 58 degrees of freedom, variance 2 · 58.
         let residual: f64 = fits.iter().map(|fit| fit.chi_squared).sum::<f64>() / RUNS as f64;
         let bound = 4.0 * (116.0 / RUNS as f64).sqrt() + 0.03 * 58.0;
-        assert!((residual - 58.0).abs() < bound, "chi-squared {residual}, bound {bound}");
+        assert!(abs_diff_eq!(residual, 58.0, epsilon = bound), "chi-squared {residual}, bound {bound}");
     }
 }
 
@@ -151,7 +152,7 @@ fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
     // Binomial around 1 - exp(-2); 1 % for echoes left out at the ends and what is of second order.
     let (rate, expected) = (found as f64 / RUNS as f64, 1.0 - (-2.0_f64).exp());
     let bound = 4.0 * (expected * (1.0 - expected) / RUNS as f64).sqrt() + 0.01;
-    assert!((rate - expected).abs() < bound, "{rate}, expected {expected} ± {bound}");
+    assert!(abs_diff_eq!(rate, expected, epsilon = bound), "{rate}, expected {expected} ± {bound}");
 }
 
 fn walls(extractor: &mut LineExtractor, laser: Laser, ranges: &[f64]) -> Vec<WallSegment> {

@@ -1,5 +1,6 @@
 //! Parameters as a user's file has them, and segments there and back.
 
+use approx::assert_abs_diff_eq;
 use wayfix_line_extract::{
     HessianLine, LineExtraction, LineExtractionError, LineExtractionParams, Scan, SplitMethod, extract,
 };
@@ -31,9 +32,10 @@ fn what_was_found_survives() -> Result<(), LineExtractionError> {
     for (a, b) in back.segments.iter().zip(&seen.segments) {
         assert_eq!((a.beams, a.n_points), (b.beams, b.n_points));
         // This reader of JSON may miss the last bit.
-        assert!((a.start - b.start).norm() < 1e-12 && (a.end - b.end).norm() < 1e-12);
-        assert!((a.estimate.line.rho() - b.estimate.line.rho()).abs() < 1e-12);
-        assert!((a.estimate.covariance - b.estimate.covariance).norm() < 1e-15);
+        assert_abs_diff_eq!(a.start, b.start, epsilon = 1e-12);
+        assert_abs_diff_eq!(a.end, b.end, epsilon = 1e-12);
+        assert_abs_diff_eq!(a.estimate.line.rho(), b.estimate.line.rho(), epsilon = 1e-12);
+        assert_abs_diff_eq!(a.estimate.covariance, b.estimate.covariance, epsilon = 1e-15);
     }
     // A line written by hand in another of its forms is brought to the one form.
     let line: HessianLine = serde_json::from_str(r#"{ "rho": -2.0, "alpha": 0.0 }"#).expect("valid JSON");

@@ -1,7 +1,7 @@
 //! KLD-sampling against the distribution that it approximates, and against its promise.
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its sampler has failed")]
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use rand::{RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
@@ -26,7 +26,10 @@ fn kld_particle_counts_match_chi_squared_quantiles() {
                 let quantile = ChiSquared::new(n_bins as f64 - 1.0).unwrap().inverse_cdf(confidence);
                 let (exact, got) = (quantile / (2.0 * epsilon), kld.required(n_bins) as f64);
                 let relative = if n_bins == 2 { 0.03 } else { 0.01 };
-                assert!((got - exact).abs() <= relative * exact + 1.0, "{n_bins} bins: {got}, exact {exact}");
+                assert!(
+                    abs_diff_eq!(got, exact, epsilon = relative * exact + 1.0),
+                    "{n_bins} bins: {got}, exact {exact}"
+                );
             }
         }
     }

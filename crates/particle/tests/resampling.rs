@@ -1,6 +1,7 @@
 //! Each scheme keeps the laws and has the variance that its paper promises.
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its weights has failed")]
 
+use approx::abs_diff_eq;
 use rand::{Rng, RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_gaussian_core::ChiSquaredBand;
@@ -110,8 +111,16 @@ fn counts_stay_as_close_to_expectation_as_each_scheme_promises() {
         let residual = counts(&ResidualResampler, &weights, n, &mut rng);
         for (i, share) in weights.as_slice().iter().enumerate() {
             let expected = share * n as f64;
-            assert!((systematic[i] - expected).abs() < 1.0, "systematic: {} for {expected}", systematic[i]);
-            assert!((stratified[i] - expected).abs() < 2.0, "stratified: {} for {expected}", stratified[i]);
+            assert!(
+                abs_diff_eq!(systematic[i], expected, epsilon = 1.0),
+                "systematic: {} for {expected}",
+                systematic[i]
+            );
+            assert!(
+                abs_diff_eq!(stratified[i], expected, epsilon = 2.0),
+                "stratified: {} for {expected}",
+                stratified[i]
+            );
             assert!(residual[i] >= expected.floor(), "residual: {} for {expected}", residual[i]);
         }
     }

@@ -81,6 +81,7 @@ impl HeldVelocity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn at(milliseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
@@ -93,9 +94,9 @@ mod tests {
         let mut held = HeldVelocity::default();
         assert_eq!(held.motion_until(at(5), 1.0), None);
         held.hold(at(1000), FORWARD).unwrap();
-        assert!((held.motion_until(at(1500), 1.0).unwrap().increment.x() - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(held.motion_until(at(1500), 1.0).unwrap().increment.x(), 1.0, epsilon = 1e-12);
         assert_eq!(held.motion_until(at(1500), 1.0), None);
-        assert!((held.motion_until(at(1600), 1.0).unwrap().increment.x() - 0.2).abs() < 1e-9);
+        assert_abs_diff_eq!(held.motion_until(at(1600), 1.0).unwrap().increment.x(), 0.2, epsilon = 1e-9);
     }
 
     #[test]
@@ -103,9 +104,11 @@ mod tests {
         let mut held = HeldVelocity::default();
         held.hold(at(1000), FORWARD).unwrap();
         let motion = held.motion_until(at(4000), 1.0).unwrap();
-        assert!((motion.increment.x() - 2.0).abs() < 1e-12 && (motion.unknown_seconds - 2.0).abs() < 1e-12);
+        assert_abs_diff_eq!(motion.increment.x(), 2.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(motion.unknown_seconds, 2.0, epsilon = 1e-12);
         let motion = held.motion_until(at(4500), 1.0).unwrap();
-        assert!(motion.increment.x() == 0.0 && (motion.unknown_seconds - 0.5).abs() < 1e-12);
+        assert_abs_diff_eq!(motion.unknown_seconds, 0.5, epsilon = 1e-12);
+        assert!(motion.increment.x() == 0.0);
     }
 
     #[test]
@@ -115,7 +118,7 @@ mod tests {
             held.hold(at(0), FORWARD).unwrap();
             let error = held.hold(at(100), Velocity { linear, angular: 0.0 }).unwrap_err();
             assert!(error.len() < 120, "{error}");
-            assert!((held.motion_until(at(200), 1.0).unwrap().increment.x() - 0.4).abs() < 1e-12);
+            assert_abs_diff_eq!(held.motion_until(at(200), 1.0).unwrap().increment.x(), 0.4, epsilon = 1e-12);
         }
     }
 }

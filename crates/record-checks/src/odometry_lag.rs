@@ -100,6 +100,7 @@ impl Turns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     const AMPLITUDE: f64 = 1.0;
 
@@ -125,7 +126,7 @@ mod tests {
     fn lag_of_odometry_is_found_to_the_nearest_scan() {
         for lag in [0.26, -0.15, 0.5] {
             let found = found_lag(lag, AMPLITUDE).unwrap();
-            assert!((found - lag).abs() < 0.5 * 0.1 + 1e-9, "{found} for {lag}");
+            assert_abs_diff_eq!(found, lag, epsilon = 0.5 * 0.1 + 1e-9);
         }
     }
 

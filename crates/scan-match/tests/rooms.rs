@@ -1,5 +1,6 @@
 //! Scans of simulated rooms, laid on one another.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -136,7 +137,11 @@ fn a_corridor_says_nothing_of_the_way_along_it() {
     assert!(error.y.abs() < 0.03 && error.z.abs() < 0.01, "{error}");
     // Normals err by the noise over the span of their seven points, a few hundredths: along is known a thousandth as well as across, in information.
     assert!(found.information.m11 < 0.01 * found.information.m22, "{}", found.information);
-    assert!((found.pose.x() - guess.x()).abs() < 0.2, "within a deviation of the guess: {}", found.pose.x());
+    assert!(
+        abs_diff_eq!(found.pose.x(), guess.x(), epsilon = 0.2),
+        "within a deviation of the guess: {}",
+        found.pose.x()
+    );
 }
 
 /// Points on a circle around (1, 0), seen from the origin: nothing tells a turn about the centre. Of the information that noisy normals pretend, what is
@@ -186,10 +191,10 @@ fn points_and_guess_add_up() {
     let found = align(&room(), &truth, &guess, &covariance, 5);
     let prior = covariance.try_inverse().expect("a covariance") / found.guess_scale;
     let posterior = (found.information + prior).try_inverse().expect("definite") * found.information_vector;
-    assert!((posterior - found.correction).norm() < 1e-9);
+    assert_abs_diff_eq!(posterior, found.correction, epsilon = 1e-9);
     assert!((guess.retract(&posterior).local(&found.pose)).norm() < 1e-9);
     let nis = found.correction.dot(&(prior * found.correction)) * found.guess_scale;
-    assert!((found.guess_scale - (4.0 + nis) / 7.0).abs() < 1e-9, "{}", found.guess_scale);
+    assert_abs_diff_eq!(found.guess_scale, (4.0 + nis) / 7.0, epsilon = 1e-9);
 }
 
 #[test]

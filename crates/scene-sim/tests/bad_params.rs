@@ -7,9 +7,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::{WheelSlipParams, WheeledRobotParams};
 use wayfix_scene_sim::monobot::MonobotParams;
 use wayfix_scene_sim::random::{NoiseShape, RandomStreamPurpose};
-use wayfix_scene_sim::route::{
-    CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route, RoutePiece,
-};
+use wayfix_scene_sim::route::{CircleRoute, RandomWaypointRoute, RoundedRectangleRoute, Route, RoutePiece};
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::{
     Clutter, ClutterIdentity, CorrelatedErrorParams, RangeDependentSigma,
@@ -18,7 +16,7 @@ use wayfix_scene_sim::sensor::{
     GaussianOdometryParams, LaserParams, RangeBearingParams, SimulatedSensor, WheelOdometryParams,
 };
 use wayfix_scene_sim::sensor::{SensorReading, TrueState};
-use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, RoadsideLandmarks, UniformLandmarkField};
+use wayfix_scene_sim::world::{CorridorLoop, OfficeFloor, RoadsideLandmarks, UniformLandmarkField};
 use wayfix_scene_sim::{Scenario, ScenarioParams, Simulation, SimulationError};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
@@ -160,15 +158,12 @@ fn routes() {
     let rng = streams.of(RandomStreamPurpose::Route);
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         let rectangle = RoundedRectangleRoute { length_m: 9.0, width_m: 9.0, corner_radius_m: 1.0 };
-        let rows = LawnMowerRoute { n_rows: 2, row_length_m: 1.0, spacing_m: 1.0 };
         let points = RandomWaypointRoute { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
         for route in [
             CircleRoute { radius_m: bad }.route(),
             RoundedRectangleRoute { length_m: bad, ..rectangle }.route(),
             RoundedRectangleRoute { width_m: bad, ..rectangle }.route(),
             RoundedRectangleRoute { corner_radius_m: bad, ..rectangle }.route(),
-            LawnMowerRoute { row_length_m: bad, ..rows }.route(),
-            LawnMowerRoute { spacing_m: bad, ..rows }.route(),
             RandomWaypointRoute { half_width_m: bad, ..points }.route(rng),
             RandomWaypointRoute { turn_radius_m: bad, ..points }.route(rng),
         ] {
@@ -183,10 +178,6 @@ fn routes() {
     let cramped = RandomWaypointRoute { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
     let no_room = SimulationError::NoRoom { what: "waypoints", placed: 0, wanted: 2 };
     assert_eq!(cramped.route(rng), Err(no_room));
-    assert!(matches!(
-        LawnMowerRoute { n_rows: usize::MAX, row_length_m: 1.0, spacing_m: 1.0 }.route(),
-        Err(SimulationError::TooMany { .. })
-    ));
 }
 
 #[test]
@@ -202,10 +193,6 @@ fn worlds() {
         assert_refused(CorridorLoop { length_m: bad, ..corridor }.plan(rng).map(drop), bad);
         assert_refused(CorridorLoop { corridor_m: bad, ..corridor }.plan(rng).map(drop), bad);
         assert_refused(CorridorLoop { spacing_m: bad, ..corridor }.plan(rng).map(drop), bad);
-        let office = Office { n_columns: 2, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.1 };
-        assert_refused(Office { room_m: bad, ..office }.plan(rng).map(drop), bad);
-        assert_refused(Office { door_m: bad, ..office }.plan(rng).map(drop), bad);
-        assert_refused(Office { jitter_m: bad, ..office }.plan(rng).map(drop), bad);
         let floor = OfficeFloor {
             length_m: 28.0,
             width_m: 17.0,
@@ -236,8 +223,6 @@ fn worlds() {
     }
     let crowded = UniformLandmarkField { n_landmarks: 100, half_width_m: 1.0, separation_m: 1.0 };
     assert!(matches!(crowded.plan(rng), Err(SimulationError::NoRoom { wanted: 100, .. })));
-    let endless = Office { n_columns: usize::MAX, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.0 };
-    assert!(matches!(endless.plan(rng), Err(SimulationError::TooMany { .. })));
     let tight = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 1e-300 };
     assert!(matches!(tight.plan(rng), Err(SimulationError::TooMany { .. })));
 }

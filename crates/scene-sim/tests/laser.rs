@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::FRAC_PI_2;
 
 use support::{assert_near, assert_share, deviation, mean, streams};
@@ -70,7 +71,8 @@ fn a_turned_and_moved_robot_sees_the_same_wall_from_there() {
     let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
     let reading = Laser::new(exact()).expect("valid").sense(&moment, &mut streams(1));
     let Some(RecordData::Scan(scan)) = reading.map(|reading| reading.data) else { panic!("no scan") };
-    assert!((scan.ranges[90] - 2.0).abs() < 1e-9 && (scan.ranges[30] - 4.0).abs() < 1e-9);
+    assert_abs_diff_eq!(scan.ranges[90], 2.0, epsilon = 1e-9);
+    assert_abs_diff_eq!(scan.ranges[30], 4.0, epsilon = 1e-9);
 }
 
 #[test]
@@ -145,7 +147,7 @@ fn people_stand_before_walls_and_hide_as_much_as_they_are_wide() {
     let expected = 1.0 - (-covered / 181.0_f64).exp();
     // Poisson: 400 persons, 5 %; and what is out of sight at the ends, covered/4 of 181 beams at most: 4 %.
     let share = hidden as f64 / (400.0 * 181.0);
-    assert!((share / expected - 1.0).abs() < 4.0 * 0.05 + 0.04, "{share}, expected {expected}");
+    assert!(abs_diff_eq!(share / expected, 1.0, epsilon = 4.0 * 0.05 + 0.04), "{share}, expected {expected}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::assert_abs_diff_eq;
 use support::{assert_near, deviation, mean, streams};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
 use wayfix_sensor_log::{RecordData, Stamp};
@@ -19,8 +20,9 @@ fn without_noise_it_follows_the_sine_and_returns() {
         ..MonobotParams::default()
     };
     let run = &runs(silent, 1)[0];
-    assert!((run.positions[25] - 0.0).abs() < 1e-12 && (run.positions[75] + 2.0).abs() < 1e-12);
-    assert!((run.positions[100] + 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(run.positions[25], 0.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(run.positions[75], -2.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(run.positions[100], -1.0, epsilon = 1e-12);
     for (k, x) in run.positions.iter().enumerate() {
         assert_eq!((run.ranges[k][0], run.anchor_ranges[k], run.external_positions[k]), (1.0 - x, -x, *x));
     }
@@ -64,7 +66,7 @@ fn as_a_log_it_says_the_same() {
     });
     for ranges in &run.ranges {
         for (detection, range) in looks.next().expect("a look for every position").iter().zip(ranges) {
-            assert!((detection.range * libm::cos(detection.bearing) - range).abs() < 1e-12);
+            assert_abs_diff_eq!(detection.range * libm::cos(detection.bearing), range, epsilon = 1e-12);
         }
     }
     let travelled: f64 = records
@@ -74,5 +76,5 @@ fn as_a_log_it_says_the_same() {
             _ => None,
         })
         .sum();
-    assert!((travelled - run.controls.iter().sum::<f64>()).abs() < 1e-12);
+    assert_abs_diff_eq!(travelled, run.controls.iter().sum::<f64>(), epsilon = 1e-12);
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use approx::abs_diff_eq;
 use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
@@ -79,7 +80,11 @@ fn a_dimmed_visit_is_gain_offset_and_gamma() {
         let seen =
             ImagingConditions { noise: 0.0, ..ImagingConditions::dimmed() }.picture_of(&flat, 1).unwrap();
         let expected = 20.0 + 0.7 * 255.0 * (f64::from(value) / 255.0).powf(1.3);
-        assert!((f64::from(seen.rgb[0]) - expected).abs() <= 0.51, "{value}: {} {expected}", seen.rgb[0]);
+        assert!(
+            abs_diff_eq!(f64::from(seen.rgb[0]), expected, epsilon = 0.51),
+            "{value}: {} {expected}",
+            seen.rgb[0]
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod support;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
@@ -80,14 +81,18 @@ fn scale_and_bias_shift_every_reading() {
     let params =
         RangeBearingParams { range_bias_m: 0.2, range_scale: 1.1, bearing_bias_rad: -0.3, ..silent() };
     let seen = detections(params, &ahead(), 1, SEED);
-    assert!((seen[0].range - 5.7).abs() < 1e-12 && (seen[0].bearing + 0.3).abs() < 1e-12, "{seen:?}");
+    assert_abs_diff_eq!(seen[0].range, 5.7, epsilon = 1e-12);
+    assert_abs_diff_eq!(seen[0].bearing, -0.3, epsilon = 1e-12);
 }
 
 #[test]
 fn bearings_stay_wrapped() {
     let params = RangeBearingParams { bearing_bias_rad: 0.1, ..silent() };
     let seen = detections(params, &world(&[(-5.0, 0.1)]), 1, SEED);
-    assert!((seen[0].bearing - (0.1 - 0.02 - PI)).abs() < 1e-5, "beyond π comes out near −π: {seen:?}");
+    assert!(
+        abs_diff_eq!(seen[0].bearing, 0.1 - 0.02 - PI, epsilon = 1e-5),
+        "beyond π comes out near −π: {seen:?}"
+    );
 }
 
 #[test]

@@ -2,12 +2,13 @@
 
 mod support;
 
+use approx::assert_abs_diff_eq;
 use support::streams;
 use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::RandomStreamPurpose;
 use wayfix_scene_sim::route::{CircleRoute, Route, RoutePiece};
 use wayfix_scene_sim::world::{
-    CorridorLoop, FloorPlan, Office, OfficeFloor, OtherRobot, PlanarWorld, RoadsideLandmarks, SensorWorld,
+    CorridorLoop, FloorPlan, OfficeFloor, OtherRobot, PlanarWorld, RoadsideLandmarks, SensorWorld,
     UniformLandmarkField,
 };
 use wayfix_sensor_log::{DetectionTarget, TrueLandmark};
@@ -58,23 +59,6 @@ fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
 }
 
 #[test]
-fn offices_have_corner_posts_and_doors() {
-    let office = Office { n_columns: 3, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.2 };
-    let plan = office.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
-    assert_eq!(plan.landmarks.len(), 4 * 3);
-    assert!(points(&plan).iter().all(|p| {
-        let from_corner = |offset: f64| (offset - (offset / 4.0).round() * 4.0).abs();
-        from_corner(p.x + 6.0) <= 0.2 && from_corner(p.y + 4.0) <= 0.2
-    }));
-    let world = PlanarWorld::new(plan);
-    let at = Vector2::new;
-    let (left, middle, above) = (at(-4.0, -2.0), at(0.0, -2.0), at(0.0, 2.0));
-    assert!(!world.occludes(&left, &middle) && !world.occludes(&middle, &above), "doors are open");
-    assert!(world.occludes(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
-    assert!(world.occludes(&middle, &at(0.0, -5.0)), "nor are outer walls");
-}
-
-#[test]
 fn an_office_floor_is_closed_but_for_its_doors() {
     let floor = OfficeFloor {
         length_m: 28.4,
@@ -114,7 +98,7 @@ fn an_office_floor_is_closed_but_for_its_doors() {
         let (inside, outside) = (Vector2::new(x, -9.6), Vector2::new(x, -9.71));
         !plan.walls.iter().any(|wall| wall.occludes(&inside, &outside))
     });
-    assert!((open.count() as f64 * 20.0 / f64::from(samples) - 5.0 * 0.9).abs() < 0.04);
+    assert_abs_diff_eq!(open.count() as f64 * 20.0 / f64::from(samples), 5.0 * 0.9, epsilon = 0.04);
 }
 
 #[test]
@@ -146,6 +130,10 @@ fn other_robots_follow_routes_and_targets_keep_order() {
             kinds,
             [DetectionTarget::Landmark(4), DetectionTarget::UnknownCode(99), DetectionTarget::Robot(2)]
         );
-        assert!((world.targets(seconds)[2].1 - Vector2::new(1.0 + 0.5 * seconds, 0.0)).norm() < 1e-12);
+        assert_abs_diff_eq!(
+            world.targets(seconds)[2].1,
+            Vector2::new(1.0 + 0.5 * seconds, 0.0),
+            epsilon = 1e-12
+        );
     }
 }

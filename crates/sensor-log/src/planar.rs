@@ -34,6 +34,7 @@ pub(crate) fn quaternion_of(heading: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
@@ -45,7 +46,7 @@ mod tests {
             let heading = wrap_angle(heading) + 0.0;
             let [x, y, z, w] = quaternion_of(heading);
             prop_assert_eq!(heading_of([x, y, z, w]).to_bits(), heading.to_bits());
-            prop_assert!((z * z + w * w - 1.0).abs() < 1e-15);
+            assert_abs_diff_eq!(z * z + w * w, 1.0, epsilon = 1e-15);
         }
 
         #[test]
@@ -53,7 +54,7 @@ mod tests {
             // q = q_z(heading) q_x(roll): rolling about the x axis does not turn it.
             let ((sz, cz), (sx, cx)) = ((0.5 * heading).sin_cos(), (0.5 * roll).sin_cos());
             let back = heading_of([cz * sx, sz * sx, sz * cx, cz * cx]);
-            prop_assert!((back - heading).abs() < 1e-12);
+            assert_abs_diff_eq!(back, heading, epsilon = 1e-12);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -128,8 +129,8 @@ fn viewers_find_the_pixel_that_the_camera_model_says() {
     let (x, y, z) = (3.0, 0.7, -0.4);
     let seen = rotation(optical).inverse_transform_vector(&Vector3::new(x, y, z));
     let p = nalgebra::Matrix3x4::from_row_slice(&calibration.p) * seen.push(1.0);
-    assert!((p.x / p.z - (INFO.cx - INFO.fx * y / x)).abs() < 1e-12);
-    assert!((p.y / p.z - (INFO.cy - INFO.fy * z / x)).abs() < 1e-12);
+    assert_abs_diff_eq!(p.x / p.z, INFO.cx - INFO.fx * y / x, epsilon = 1e-12);
+    assert_abs_diff_eq!(p.y / p.z, INFO.cy - INFO.fy * z / x, epsilon = 1e-12);
 }
 
 proptest! {

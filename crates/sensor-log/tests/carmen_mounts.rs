@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::Path;
 
@@ -53,8 +54,8 @@ fn mounts_and_poses(records: &[Record]) -> (Vec<Pose2<f64>>, Vec<Pose2<f64>>) {
             RecordData::LaserMount(mount) => mounts.push(*mount),
             RecordData::EstimatedPose(pose) => poses.push(*pose),
             RecordData::OdometryIncrement(step) => {
-                assert!((step.heading() - 0.2).abs() < 1e-5, "{step:?}");
-                assert!((step.x().hypot(step.y()) - 4.0 * 0.1_f64.sin()).abs() < 1e-5, "{step:?}");
+                assert_abs_diff_eq!(step.heading(), 0.2, epsilon = 1e-5);
+                assert_abs_diff_eq!(step.x().hypot(step.y()), 4.0 * 0.1_f64.sin(), epsilon = 1e-5);
             }
             _ => {}
         }
@@ -180,7 +181,7 @@ fn robotlaser_alone_has_the_field_of_view_that_it_states() {
     let (records, report) = read(&folder.path().join("robot.log"), (line(0.0) + &line(0.1)).as_bytes());
     assert_eq!(mounts_of(&records), [Pose2::new(0.145, 0.0, 0.0)]);
     let RecordData::Scan(scan) = &records[1].data else { panic!("{records:?}") };
-    assert!((scan.bearing(681) - 2.094395).abs() < 1e-4);
+    assert_abs_diff_eq!(scan.bearing(681), 2.094395, epsilon = 1e-4);
     assert_eq!((scan.range_max, scan.echoes().count(), report.n_problems()), (4.0, 0, 0));
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Expected counts are those of the files' rows, counted with `grep -vc '^#'` and `sort -u`.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -172,7 +173,8 @@ fn intel_relations_fit_the_corrected_poses() {
     let (n_corrected, corrected) = mean_error("intel_corrected.json.gz");
     let (n_raw, raw) = mean_error("intel_gfs.json.gz");
     assert_eq!((n_corrected, n_raw), (148, 148));
-    assert!((corrected - 0.109).abs() < 1e-3 && (raw - 4.48).abs() < 1e-2, "{corrected} {raw}");
+    assert_abs_diff_eq!(corrected, 0.109, epsilon = 1e-3);
+    assert_abs_diff_eq!(raw, 4.48, epsilon = 1e-2);
 }
 
 #[test]
@@ -186,7 +188,10 @@ fn simulated_range_bearing_logs() {
         assert_eq!(count(&records, |data| matches!(data, RecordData::TrueLandmark(_))), n_landmarks);
         assert_eq!(count(&records, |data| matches!(data, RecordData::OdometryIncrement(_))), 500);
         assert_eq!(count(&records, |data| matches!(data, RecordData::TruePose(_))), 500);
-        assert!((records.last().unwrap().stamp.seconds() - 49.9).abs() < 1e-9, "500 steps of 0.1 s");
+        assert!(
+            abs_diff_eq!(records.last().unwrap().stamp.seconds(), 49.9, epsilon = 1e-9),
+            "500 steps of 0.1 s"
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 
 use wayfix_estimation_traits::Pose2;
@@ -109,7 +110,7 @@ fn a_scan_years_off_is_left_out_and_counted() {
 fn another_number_of_beams_spans_the_half_circle_and_is_said() {
     let (records, report) = read(&document(&[entry("1", 541, "0"), entry("2", 541, "0")])).unwrap();
     let RecordData::Scan(scan) = &records[1].data else { panic!("{records:?}") };
-    assert!((scan.bearing(540) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    assert_abs_diff_eq!(scan.bearing(540), std::f64::consts::FRAC_PI_2, epsilon = 1e-12);
     let names: Vec<_> = report.warnings.iter().map(|warning| warning.name).collect();
     assert_eq!(names, ["laser_field_of_view_assumed"]);
 }

@@ -1,5 +1,6 @@
 //! The text readers, on files written here.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::fs;
 use std::path::Path;
 
@@ -119,7 +120,7 @@ fn tum_headings_come_from_the_quaternion_for_both_signs() {
         })
         .collect();
     for (heading, expected) in headings.iter().zip([1.3, 1.3, -1.3]) {
-        assert!((heading - expected).abs() < 1e-15, "{heading} instead of {expected}");
+        assert_abs_diff_eq!(*heading, expected, epsilon = 1e-15);
     }
     assert_eq!(headings.len(), 3);
     assert_eq!(report.problems[&RowProblemKind::Inconsistent], 1);
@@ -237,6 +238,6 @@ fn tum_columns_are_read_by_their_names_and_with_commas() {
         let [Record { data: RecordData::EstimatedPose(pose), .. }] = records[..] else {
             panic!("{text}: {records:?}")
         };
-        assert!((pose.heading() - 1.3).abs() < 1e-15 && pose.x() == 2.0, "{text}: {pose:?}");
+        assert!(abs_diff_eq!(pose.heading(), 1.3, epsilon = 1e-15) && pose.x() == 2.0, "{text}: {pose:?}");
     }
 }

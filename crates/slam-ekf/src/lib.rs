@@ -48,13 +48,12 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, ExternalError, ExternalParams,
-    HeadingDriftSensor, HeadingSensor, LineDistanceSensor, LocalPlane, MapMeasurement, MonobotMotion,
-    MotionStatistics, MotionWithHeadingDrift, MotionWithRangeScale, MountedSensor, MovedSensor,
-    OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot, PoseSensor, PoseWithHeadingDrift, PoseWithRangeScale,
-    PositionSensor, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, RelativePosition,
-    RelativePositionSensor, SensorWithHeadingDrift, SequentialMotion, UnknownMotion, VelocityControl,
-    VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannVehicle, CorrelatedNoise, ExternalError, ExternalParams, HeadingDriftSensor, HeadingSensor,
+    LineDistanceSensor, LocalPlane, MapMeasurement, MonobotMotion, MotionStatistics, MotionWithHeadingDrift,
+    MotionWithRangeScale, MountedSensor, MovedSensor, OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot,
+    PoseSensor, PoseWithHeadingDrift, PoseWithRangeScale, PositionSensor, RangeBearing, RangeBearingSensor,
+    RangeBearingSensorWithScale, RelativePosition, RelativePositionSensor, SensorWithHeadingDrift,
+    SequentialMotion, UnknownMotion, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};

@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::abs_diff_eq;
 use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -49,7 +50,10 @@ fn compare([full, compressed]: &[Slam; 2], when: usize) {
         let sigma = one.covariance.diagonal().min().sqrt();
         let error = (one.mean - other.mean).amax() / sigma;
         assert!(one.id == other.id && error < 1e-9, "step {when}: landmark {} by {error:e}", one.id);
-        assert!((one.covariance - other.covariance).amax() < 1e-9 * one.covariance.amax(), "step {when}");
+        assert!(
+            abs_diff_eq!(one.covariance, other.covariance, epsilon = 1e-9 * one.covariance.amax()),
+            "step {when}"
+        );
     }
 }
 

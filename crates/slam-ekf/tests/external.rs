@@ -3,6 +3,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -54,7 +55,11 @@ fn position_jacobian_is_the_identity_in_world_axes() {
     let sensor = PositionSensor { antenna: Vector2::zeros(), ..POSITION };
     for pose in poses() {
         let in_world = sensor.jacobian(&pose) * pose.rotation_matrix().transpose().to_homogeneous();
-        assert!((in_world.fixed_view::<2, 2>(0, 0) - Matrix2::identity()).norm() < 1e-12);
+        assert_abs_diff_eq!(
+            in_world.fixed_view::<2, 2>(0, 0).into_owned(),
+            Matrix2::identity(),
+            epsilon = 1e-12
+        );
         assert!(in_world.column(2).norm() < 1e-12);
     }
 }
@@ -68,7 +73,10 @@ fn covariance_of_a_measured_pose_is_in_map_axes() {
     let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start, wide).unwrap();
     slam.update_pose(&PoseSensor { covariance }, &Pose2::new(1.0, 1.0, start.heading())).unwrap();
     let moved = slam.robot().translation;
-    assert!((moved.x - 0.5).abs() < 1e-9 && (moved.y - 1.0).abs() < 1e-3, "{moved}");
+    assert!(
+        abs_diff_eq!(moved.x, 0.5, epsilon = 1e-9) && abs_diff_eq!(moved.y, 1.0, epsilon = 1e-3),
+        "{moved}"
+    );
 }
 
 #[test]
@@ -98,7 +106,8 @@ fn jump_of_a_hundred_metres_leaves_the_filter_untouched() {
     let refused = slam.update_pose(&POSITION, &(position + Vector2::new(100.0, 0.0)));
     let Err(SlamError::Outlier { nis, threshold }) = refused else { panic!("{refused:?}") };
     // The chi-squared quantile of 0.9999 with two degrees of freedom is -2 ln(0.0001).
-    assert!((threshold + 2.0 * 1e-4_f64.ln()).abs() < 1e-6 && nis > threshold);
+    assert_abs_diff_eq!(threshold, -2.0 * 1e-4_f64.ln(), epsilon = 1e-6);
+    assert!(nis > threshold);
     assert_eq!(slam.snapshot(), before);
     assert!(slam.update_pose(&POSITION, &position).is_ok());
 }
@@ -161,9 +170,12 @@ fn local_plane_has_the_radii_of_wgs_84() {
     let plane = LocalPlane::new(45.0, 9.0).unwrap();
     let step = 1e-3_f64.to_radians();
     let east = plane.position(45.0, 9.001);
-    assert!((east.x / (6_388_838.3 * 45f64.to_radians().cos() * step) - 1.0).abs() < 1e-6, "{east}");
+    assert!(
+        abs_diff_eq!(east.x / (6_388_838.3 * 45f64.to_radians().cos() * step), 1.0, epsilon = 1e-6),
+        "{east}"
+    );
     let north = plane.position(45.001, 9.0);
-    assert!((north.y / (6_367_381.8 * step) - 1.0).abs() < 1e-5, "{north}");
+    assert!(abs_diff_eq!(north.y / (6_367_381.8 * step), 1.0, epsilon = 1e-5), "{north}");
 }
 
 /// Odometry without noise models drifts; a position of half a metre each metre holds it.

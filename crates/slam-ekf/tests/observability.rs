@@ -3,7 +3,7 @@
 
 mod common;
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix1, Matrix2, Matrix2x3, Vector1, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -84,8 +84,16 @@ fn about_a_single_anchor_the_map_still_turns() {
         directions[0].parts.iter().find(|(found, _)| *found == name).map_or(0.0, |(_, part)| *part)
     };
     let turn = part("rotation of everything");
-    assert!((part("translation of everything along x") - turn * y).abs() < 1e-6, "{}", directions[0]);
-    assert!((part("translation of everything along y") + turn * x).abs() < 1e-6, "{}", directions[0]);
+    assert!(
+        abs_diff_eq!(part("translation of everything along x"), turn * y, epsilon = 1e-6),
+        "{}",
+        directions[0]
+    );
+    assert!(
+        abs_diff_eq!(part("translation of everything along y"), -turn * x, epsilon = 1e-6),
+        "{}",
+        directions[0]
+    );
 }
 
 #[test]

@@ -7,6 +7,7 @@
     reason = "a panic is the verdict of a test, in its helpers too"
 )]
 
+use approx::abs_diff_eq;
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -98,7 +99,12 @@ fn window_that_drops_nothing_equals_the_batch() {
     let (steps, _) = steps(40);
     let (batch, of_batch) = run(None, &steps);
     let (window, of_window) = run(Some(1e6), &steps);
-    assert!((batch.cost() / window.cost() - 1.0).abs() < 1e-9, "{} {}", batch.cost(), window.cost());
+    assert!(
+        abs_diff_eq!(batch.cost() / window.cost(), 1.0, epsilon = 1e-9),
+        "{} {}",
+        batch.cost(),
+        window.cost()
+    );
     assert_eq!(of_batch.len(), 41);
     for (a, b) in of_batch.iter().zip(&of_window) {
         // Both stop where a step gains less than 1e-8 of the cost.

@@ -7,6 +7,7 @@
     reason = "a panic is the verdict of a test, in its helpers too"
 )]
 
+use approx::assert_abs_diff_eq;
 use nalgebra::Vector2;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -73,8 +74,12 @@ fn path_beacons_and_calibration_are_found() {
             let nees = error.dot(&covariance.cholesky().unwrap().solve(&error));
             assert!(nees < 34.0, "pose {number}: {error} {nees}");
         }
-        assert!((found.calibration.bias - BIAS).abs() < 5.0 * found.calibration_sigma.bias);
-        assert!((found.calibration.log_scale - SCALE.ln()).abs() < 5.0 * found.calibration_sigma.log_scale);
+        assert_abs_diff_eq!(found.calibration.bias, BIAS, epsilon = 5.0 * found.calibration_sigma.bias);
+        assert_abs_diff_eq!(
+            found.calibration.log_scale,
+            SCALE.ln(),
+            epsilon = 5.0 * found.calibration_sigma.log_scale
+        );
         // Within a factor of 1.5, as noise from a log has to be.
         assert!((found.range_sigma / RANGE_SIGMA).ln().abs() < 1.5_f64.ln(), "{}", found.range_sigma);
         assert_eq!(found.n_outliers > 50, outlier > 0, "{}", found.n_outliers);

@@ -34,7 +34,7 @@ pub enum Kernel {
 
 impl Kernel {
     /// $`ρ(s)`$ and $`ρ'(s)`$, with $`μ`$ for [`GemanMcClure`](Self::GemanMcClure).
-    pub fn cost_and_weight(self, s: f64, mu: f64) -> (f64, f64) {
+    pub(crate) fn cost_and_weight(self, s: f64, mu: f64) -> (f64, f64) {
         match self {
             Self::Squared => (s, 1.0),
             Self::Huber { k } if s > k * k => (2.0 * k * s.sqrt() - k * k, k / s.sqrt()),
@@ -69,6 +69,7 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     const KERNELS: [Kernel; 5] = [
         Kernel::Squared,
@@ -88,7 +89,7 @@ mod tests {
                     let slope = (cost(s + h) - cost(s - h)) / (2.0 * h);
                     let (_, weight) = kernel.cost_and_weight(s, mu);
                     assert!(
-                        (slope - weight).abs() < 1e-8 + 1e-6 * weight,
+                        abs_diff_eq!(slope, weight, epsilon = 1e-8 + 1e-6 * weight),
                         "{kernel:?} at {s}: {slope} {weight}"
                     );
                 }
@@ -100,7 +101,10 @@ mod tests {
     fn small_residuals_cost_their_square_and_none_costs_more() {
         for kernel in KERNELS {
             let (cost, weight) = kernel.cost_and_weight(1e-9, 1.0);
-            assert!((cost / 1e-9 - 1.0).abs() < 1e-8 && (weight - 1.0).abs() < 1e-8, "{kernel:?}");
+            assert!(
+                abs_diff_eq!(cost / 1e-9, 1.0, epsilon = 1e-8) && abs_diff_eq!(weight, 1.0, epsilon = 1e-8),
+                "{kernel:?}"
+            );
             assert!((0..40).map(|i| 1.5_f64.powi(i) * 1e-3).all(|s| kernel.cost_and_weight(s, 1.0).0 <= s));
         }
     }

@@ -9,6 +9,7 @@
 
 mod common;
 
+use approx::abs_diff_eq;
 use common::world;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::{Manifold, Pose2};
@@ -34,7 +35,7 @@ fn all_methods_end_at_the_same_minimum() {
         })
         .collect();
     for (cost, pose) in &minima[1..] {
-        assert!((cost / minima[0].0 - 1.0).abs() < 1e-9, "{cost} {}", minima[0].0);
+        assert!(abs_diff_eq!(cost / minima[0].0, 1.0, epsilon = 1e-9), "{cost} {}", minima[0].0);
         assert!(pose.local(&minima[0].1).norm() < 1e-6);
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::io::{BufReader, Read, Write};
 
 use rand::RngExt;
@@ -57,10 +58,11 @@ fn sensor_on_the_robot_is_taken_into_account() {
     let G2o::Spatial(graph) = g2o::read(SPATIAL.as_bytes()).unwrap() else { panic!("spatial") };
     // The sensor looks to the left: its x is the robot's y.
     let seen = graph.point_edges[0].measured;
-    assert!((seen - nalgebra::Vector3::new(0.1 - 2.0, 0.2 + 1.0, 3.3)).norm() < 1e-6, "{seen}");
+    assert_abs_diff_eq!(seen, nalgebra::Vector3::new(0.1 - 2.0, 0.2 + 1.0, 3.3), epsilon = 1e-6);
     let information = &graph.point_edges[0].information;
     assert!(
-        (information[(1, 1)] - 2.0).abs() < 1e-6 && (information[(0, 1)] + 0.5).abs() < 1e-6,
+        abs_diff_eq!(information[(1, 1)], 2.0, epsilon = 1e-6)
+            && abs_diff_eq!(information[(0, 1)], -0.5, epsilon = 1e-6),
         "{information}"
     );
 }
@@ -72,8 +74,9 @@ fn graph_without_vertices_is_dead_reckoned() {
     assert!(graph.is_dead_reckoned);
     let ids: Vec<_> = graph.poses.iter().map(|(id, _)| *id).collect();
     assert_eq!(ids, [5, 6, 7]);
-    assert!((graph.poses[2].1.x() - 2.0).abs() < 1e-12 && (graph.poses[2].1.heading() - 1.0).abs() < 1e-12);
-    assert!((graph.points[0].1.x - 2.0 - 1.0_f64.cos()).abs() < 1e-12);
+    assert_abs_diff_eq!(graph.poses[2].1.x(), 2.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(graph.poses[2].1.heading(), 1.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(graph.points[0].1.x - 2.0, 1.0_f64.cos(), epsilon = 1e-12);
 }
 
 #[test]
@@ -145,7 +148,7 @@ fn indefinite_information_is_counted_and_repaired_on_request() {
     let G2oError::Indefinite { count: 1, total: 5, first_line: 10, smallest } = error else {
         panic!("{error}")
     };
-    assert!((smallest + 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(smallest, -1.0, epsilon = 1e-12);
     let mut repaired = graph.problem(Repair::ClipEigenvalues).unwrap();
     assert_eq!(repaired.n_repaired, 1);
     assert!(repaired.graph.optimize(&Params::default()).unwrap().cost < 1.0);

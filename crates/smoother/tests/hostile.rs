@@ -9,6 +9,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use common::world;
 use nalgebra::{Const, DVector, Dyn, Matrix1, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
@@ -183,7 +184,10 @@ fn contradicting_closure_moves_little_under_a_robust_kernel() {
         (Kernel::Switchable { phi: 1.0 }, false),
     ] {
         let moved = end(kernel, graduated);
-        assert!((moved - clean).abs() < 0.1, "{kernel:?}: {moved}, without the closure {clean}");
+        assert!(
+            abs_diff_eq!(moved, clean, epsilon = 0.1),
+            "{kernel:?}: {moved}, without the closure {clean}"
+        );
     }
 }
 
@@ -197,7 +201,7 @@ fn hundred_thousand_poses_in_a_chain_are_solved() {
     }
     let summary = graph.optimize(&Params::default()).unwrap();
     assert!(summary.cost < 1e-6, "{summary:?}");
-    assert!((graph.value(poses[99_999]).unwrap().x() - 99_999.0).abs() < 1e-2);
+    assert_abs_diff_eq!(graph.value(poses[99_999]).unwrap().x(), 99_999.0, epsilon = 1e-2);
 }
 
 #[test]

@@ -9,6 +9,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use common::world;
 use nalgebra::{Const, Matrix2, Vector2};
 use wayfix_estimation_traits::Manifold;
@@ -72,13 +73,18 @@ fn linear_window_equals_batch_after_dropping() {
     let (mut window, window_landmark, window_last) = run(4);
     assert_eq!((batch.n_variables(), window.n_variables()), (31, 5));
     let value = |graph: &Graph, id: VariableId<Vector2<f64>>| *graph.value(id).unwrap();
-    assert!((value(&batch, batch_landmark) - value(&window, window_landmark)).norm() < 1e-9);
-    assert!((value(&batch, batch_last) - value(&window, window_last)).norm() < 1e-9);
-    assert!((batch.cost() / window.cost() - 1.0).abs() < 1e-9, "{} {}", batch.cost(), window.cost());
+    assert_abs_diff_eq!(value(&batch, batch_landmark), value(&window, window_landmark), epsilon = 1e-9);
+    assert_abs_diff_eq!(value(&batch, batch_last), value(&window, window_last), epsilon = 1e-9);
+    assert!(
+        abs_diff_eq!(batch.cost() / window.cost(), 1.0, epsilon = 1e-9),
+        "{} {}",
+        batch.cost(),
+        window.cost()
+    );
     let joint = |graph: &mut Graph, ids: [usize; 2]| graph.marginals().unwrap().joint(&ids).unwrap();
     let of_batch = joint(&mut batch, [batch_landmark.index(), batch_last.index()]);
     let of_window = joint(&mut window, [window_landmark.index(), window_last.index()]);
-    assert!((&of_batch - of_window).amax() < 1e-9 * of_batch.amax());
+    assert_abs_diff_eq!(of_batch, of_window, epsilon = 1e-9 * of_batch.amax());
 }
 
 /// At a minimum, dropping changes neither the minimum nor the covariances of the others; moved away, the optimizer comes back.
@@ -94,9 +100,9 @@ fn nonlinear_minimum_stays_where_it_is() {
     let what = world.graph.marginalize(&dropped).unwrap();
     assert_eq!(world.graph.n_variables(), n_before.0 - 3);
     assert_eq!(world.graph.n_residuals(), n_before.1 - what.n_residuals + 1);
-    assert!((world.graph.cost() / cost - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(world.graph.cost() / cost, 1.0, epsilon = 1e-12);
     let after = world.graph.marginals().unwrap().covariance(kept).unwrap();
-    assert!((&after - &covariance).amax() < 1e-9 * covariance.amax());
+    assert_abs_diff_eq!(after, covariance, epsilon = 1e-9 * covariance.amax());
 
     for neighbour in [kept, world.poses[4], world.poses[8]] {
         let moved = world.graph.value(neighbour).unwrap().retract(&nalgebra::Vector3::new(0.05, -0.03, 0.04));
@@ -104,7 +110,7 @@ fn nonlinear_minimum_stays_where_it_is() {
     }
     world.graph.optimize(&EXACT).unwrap();
     assert!(value.local(world.graph.value(kept).unwrap()).norm() < 1e-6);
-    assert!((world.graph.cost() / cost - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(world.graph.cost() / cost, 1.0, epsilon = 1e-9);
 }
 
 #[test]

@@ -7,6 +7,7 @@
     reason = "a panic is the verdict of a test, in its helpers too"
 )]
 
+use approx::abs_diff_eq;
 use std::{env, fs::File, io::BufReader, path::Path};
 
 use flate2::bufread::MultiGzDecoder;
@@ -41,10 +42,13 @@ fn every_set_reaches_its_best_known_cost() {
             };
             // Half a unit of the last of six digits, and 1e-6.
             assert!(
-                (cost / best - 1.0).abs() < 1e-6 + 5e-6,
+                abs_diff_eq!(cost / best, 1.0, epsilon = 1e-6 + 5e-6),
                 "{set} by {method:?}: {cost}, best known {best}"
             );
-            assert!((file_cost / start - 1.0).abs() < 5e-3, "{set}: start {file_cost}, known {start}");
+            assert!(
+                abs_diff_eq!(file_cost / start, 1.0, epsilon = 5e-3),
+                "{set}: start {file_cost}, known {start}"
+            );
         }
     }
 }

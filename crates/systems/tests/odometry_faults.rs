@@ -1,5 +1,6 @@
 //! What odometry that is absurd, missing, slipping, slow or late makes of a drive, and scans that take time: in a room of 12 by 8 m, with a laser at 10 Hz.
 
+use approx::abs_diff_eq;
 use std::f64::consts::TAU;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
@@ -173,7 +174,7 @@ fn late_odometry_is_said_and_its_delay_corrects_it() {
     let said =
         text.split("odometry_delay = ").nth(1).and_then(|rest| rest.split('`').next()).expect("a delay");
     let odometry_delay: f64 = said.parse().expect("a number");
-    assert!((odometry_delay - 0.3).abs() < 0.05, "{text}");
+    assert!(abs_diff_eq!(odometry_delay, 0.3, epsilon = 0.05), "{text}");
     let corrected = WallSlamParams { odometry_delay: 0.3, ..WallSlamParams::default() };
     let mut corrected = run(&late, &corrected);
     assert_eq!(corrected.events().get("odometry_lags"), 0);
@@ -194,7 +195,7 @@ fn velocity_holds_for_a_limited_time() {
     let params = PointSlamParams::of(RobotProfile::Generic);
     let mut run = points::run(&log, &params, |_| {}).expect("a usable log");
     let x = run.system.filter().robot().pose.x();
-    assert!((x - params.robot.velocity_timeout - 0.3).abs() < 1e-9, "{x} m");
+    assert!(abs_diff_eq!(x - params.robot.velocity_timeout, 0.3, epsilon = 1e-9), "{x} m");
     assert_eq!(run.events().get("motion_unknown"), 1);
     let sigma = run.system.filter().robot_covariance().m11.sqrt();
     assert!(sigma > 1e7, "unknown for 1e8 s at up to 1 m/s: {sigma} m");

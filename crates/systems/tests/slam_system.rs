@@ -1,5 +1,6 @@
 //! What the SLAM system makes of records: timing, calibration, and refusals that leave no trace.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::FRAC_PI_3;
 
 use nalgebra::Vector2;
@@ -34,10 +35,10 @@ fn delayed_detection_corrects_the_past_pose() {
     let robot = RobotTimingParams { sensor_latency: 0.25, ..RobotTimingParams::default() };
     let slam = slam(&[velocity(0.0, 1.0, 0.0), detection(1.0, 7, 2.0, 0.0)], robot);
     let stamped_estimate = slam.system.stamped_estimates()[0];
-    assert!((slam.system.filter().robot().pose.x() - 0.75).abs() < 1e-12, "at the exposure");
-    assert!((stamped_estimate.pose.x() - 1.0).abs() < 1e-12, "at the stamp");
+    assert!(abs_diff_eq!(slam.system.filter().robot().pose.x(), 0.75, epsilon = 1e-12), "at the exposure");
+    assert!(abs_diff_eq!(stamped_estimate.pose.x(), 1.0, epsilon = 1e-12), "at the stamp");
     // One second of a random walk of 0.02 m/√s, a quarter of it after the exposure.
-    assert!((stamped_estimate.covariance.m11.sqrt() - 0.02).abs() < 1e-9);
+    assert_abs_diff_eq!(stamped_estimate.covariance.m11.sqrt(), 0.02, epsilon = 1e-9);
 }
 
 #[test]
@@ -45,7 +46,7 @@ fn a_delayed_command_moves_the_robot_later() {
     let robot = RobotTimingParams { command_delay: 0.5, ..RobotTimingParams::default() };
     let records = [velocity(0.0, 1.0, 0.0), velocity(1.0, 1.0, 0.0), detection(2.0, 7, 2.0, 0.0)];
     let slam = slam(&records, robot);
-    assert!((slam.system.stamped_estimates()[0].pose.x() - 1.5).abs() < 1e-12);
+    assert_abs_diff_eq!(slam.system.stamped_estimates()[0].pose.x(), 1.5, epsilon = 1e-12);
 }
 
 #[test]
@@ -55,7 +56,11 @@ fn depth_becomes_distance() {
         [velocity(0.0, 0.0, 0.0), detection(0.1, 7, 1.0, FRAC_PI_3), detection(0.2, 7, 1.0, FRAC_PI_3)];
     let slam = slam(&looks, robot);
     let position = slam.landmarks()[&7];
-    assert!((position.x - 1.0).abs() < 1e-9 && (position.y - 3.0_f64.sqrt()).abs() < 1e-9, "{position}");
+    assert!(
+        abs_diff_eq!(position.x, 1.0, epsilon = 1e-9)
+            && abs_diff_eq!(position.y, 3.0_f64.sqrt(), epsilon = 1e-9),
+        "{position}"
+    );
 }
 
 #[test]
@@ -114,7 +119,7 @@ fn the_run_starts_at_the_truth_where_odometry_starts() {
     let mut records = records.to_vec();
     records.sort_by_key(|record| record.stamp);
     let slam = slam(&records, RobotTimingParams::default());
-    assert!((slam.system.stamped_estimates()[0].dead_reckoning.x() - 5.5).abs() < 1e-12);
+    assert_abs_diff_eq!(slam.system.stamped_estimates()[0].dead_reckoning.x(), 5.5, epsilon = 1e-12);
 }
 
 #[test]
@@ -164,5 +169,5 @@ fn retired_landmarks_are_said_and_an_anchor_is_no_fault() {
     let [standard, anchored, retired] = [(0, None), (1, None), (0, Some(50))].map(|(a, r)| nees(a, r));
     println!("NEES: standard {standard:.1}, anchored {anchored:.1}, retired {retired:.1}");
     // The standard filter is inconsistent here already; what counts is what each option adds.
-    assert!((anchored - standard).abs() < 0.1 * (retired - standard));
+    assert_abs_diff_eq!(anchored, standard, epsilon = 0.1 * (retired - standard));
 }

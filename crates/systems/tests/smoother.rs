@@ -7,6 +7,7 @@
     reason = "a panic is the verdict of a test, in its helpers too"
 )]
 
+use approx::assert_abs_diff_eq;
 use std::path::Path;
 
 use nalgebra::{Vector2, Vector3};
@@ -83,7 +84,11 @@ fn ranges_place_beacons_and_say_what_is_assumed() {
     let run = ranges::run(&recording, &truth).unwrap();
     let place = run.estimate.beacons[&1].0;
     assert!((place - Vector2::new(15.0, -3.0)).norm() < 0.5, "{place}");
-    assert!((run.estimate.calibration.bias - 1.0).abs() < 5.0 * run.estimate.calibration_sigma.bias);
+    assert_abs_diff_eq!(
+        run.estimate.calibration.bias,
+        1.0,
+        epsilon = 5.0 * run.estimate.calibration_sigma.bias
+    );
     let summary = ranges::summarize(&run);
     let has = |name: &str| summary.metrics.iter().any(|metric| metric.name == name);
     assert!(

@@ -67,6 +67,7 @@ fn poses(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Ve
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
@@ -110,7 +111,7 @@ mod tests {
     fn unwrapped_radians_stay_radians_and_are_said() {
         let (rows, columns) = read_text("x_m,y_m,theta\n1,2,13.8\n3,4,14", None).unwrap();
         let heading = rows[0].as_ref().unwrap().heading.unwrap();
-        assert!((heading - (13.8 - 2.0 * std::f64::consts::TAU)).abs() < 1e-12, "{heading}");
+        assert_abs_diff_eq!(heading, 13.8 - 2.0 * std::f64::consts::TAU, epsilon = 1e-12);
         assert_eq!(columns.units(true).unwrap(), "\"theta\" in rad");
         assert_eq!(columns.units(false).unwrap(), "\"x m\" in m, \"y m\" in m");
     }

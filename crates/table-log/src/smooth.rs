@@ -54,12 +54,13 @@ const MOST_SMOOTHING: f64 = 8.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn straight_lines_stay_and_noise_shrinks() {
         let line: Vec<f64> = (0..30).map(|i| 3.0 + 0.5 * f64::from(i)).collect();
         for (value, smooth) in line.iter().zip(smoothed(&line, 2.0)) {
-            assert!((value - smooth).abs() < 1e-9);
+            assert_abs_diff_eq!(*value, smooth, epsilon = 1e-9);
         }
         let trembling: Vec<f64> = (0..30).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         assert!(smoothed(&trembling, 2.0)[5..25].iter().all(|value| value.abs() < 0.05));

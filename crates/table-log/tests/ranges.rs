@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::assert_abs_diff_eq;
 use std::{fs, path::Path};
 
 use wayfix_sensor_log::{RecordData, RowProblemKind};
@@ -32,7 +33,7 @@ fn tables_are_read_and_truth_is_optional() {
     assert!(read.report.is_clean() && read.truth.is_empty());
     assert_eq!((read.odometry.len(), read.ranges.len()), (3, 2));
     assert_eq!((read.ranges[1].beacon, read.ranges[1].range), (4, 11.5));
-    assert!((read.odometry[0].1.heading() - 0.1).abs() < 1e-12);
+    assert_abs_diff_eq!(read.odometry[0].1.heading(), 0.1, epsilon = 1e-12);
     let whole = folder(&[
         ("odometry.csv", ODOMETRY),
         ("ranges.csv", RANGES),

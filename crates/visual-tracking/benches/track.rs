@@ -31,10 +31,6 @@ fn main() {
     let target = ColorBinImage::within(&quantizer, &picture, &TARGET).expect("inside");
     let set = ColorBinSet::of_image(&target);
     measure("track segment, one set", 200, || image.segment(&set));
-    let sets: Vec<ColorBinSet> = (0..N_HYPOTHESES as u16)
-        .map(|k| ColorBinSet::from_fn(&quantizer, |bin| set.contains(bin.wrapping_add(k % 16))))
-        .collect();
-    measure("track segment, 300 sets", 50, || image.segment_all(&sets));
     let mask = image.segment(&set).expect("the same bins");
     measure("track erode 3x3", 1000, || mask.eroded(StructuringElement::Square { radius: 1 }));
     measure("track Euler number", 1000, || black_box(&mask).euler_number(PixelConnectivity::Eight));

@@ -5,6 +5,7 @@
 #[path = "common/films.rs"]
 mod films;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use films::{contour_mask, follow};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -60,7 +61,7 @@ fn colours_are_followed_and_without_adaptation_they_are_not() {
     }
     let opponent = adaptive.colors().mean;
     // (B - G + 255) / 510 of [62, 60, 198].
-    assert!((opponent.x - 393.0 / 510.0).abs() < 0.02, "{opponent}");
+    assert!(abs_diff_eq!(opponent.x, 393.0 / 510.0, epsilon = 0.02), "{opponent}");
 }
 
 #[test]
@@ -250,7 +251,7 @@ fn an_outline_of_the_users_is_the_contour() {
     let outline = Outline::ellipse(&disk_box([40.0, 45.0]), 64).unwrap();
     let tracker =
         ColorContourTracker::from_outline(&picture, &outline, ColorContourTrackerParams::default()).unwrap();
-    assert!((tracker.snake().outline().area() - outline.area()).abs() < 0.02 * outline.area());
+    assert_abs_diff_eq!(tracker.snake().outline().area(), outline.area(), epsilon = 0.02 * outline.area());
 }
 
 #[cfg(feature = "parallel")]
@@ -281,5 +282,5 @@ fn the_contour_is_the_mask_that_is_measured() {
     let truth = std::f64::consts::PI * 14.0 * 14.0;
     let area = contour_mask(&target, SIZE).area() as f64;
     // Half a pixel all round is 7 %.
-    assert!((area / truth - 1.0).abs() < 0.07, "{area} of {truth}");
+    assert!(abs_diff_eq!(area / truth, 1.0, epsilon = 0.07), "{area} of {truth}");
 }

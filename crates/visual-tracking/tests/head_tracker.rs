@@ -2,6 +2,7 @@
 
 mod common;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -89,14 +90,14 @@ fn the_scale_is_searched_or_comes_from_outside() {
     }
     let larger = picture([50.0, 60.0], 0.35, 1.5, 1.0);
     let told = started().with_scale_source(Stereo).track(&larger, &mut rng()).unwrap();
-    assert!((told.bounding_box.width() - 45.0).abs() < 1e-9);
+    assert_abs_diff_eq!(told.bounding_box.width(), 45.0, epsilon = 1e-9);
 
     let mut searching = started();
     for t in 1..=20 {
         searching.track(&picture([50.0, 60.0], 0.35, 1.0 + 0.025 * f64::from(t), 1.0), &mut rng()).unwrap();
     }
     let width = searching.track(&larger, &mut rng()).unwrap().bounding_box.width();
-    assert!((width / 45.0 - 1.0).abs() < 0.1, "{width}");
+    assert!(abs_diff_eq!(width / 45.0, 1.0, epsilon = 0.1), "{width}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod common;
 
+use approx::abs_diff_eq;
 use std::{env, path::PathBuf};
 
 use common::run_slam;
@@ -27,7 +28,10 @@ fn utias_reference_noise_is_within_2_percent_of_a_peer() {
         let outcome = run_slam(&set, &["--robot", robot, "--params", REFERENCE]);
         for (name, reference) in [("ate_rmse_m", ate), ("ate_aligned_rmse_m", aligned)] {
             let ours = outcome.metric(name);
-            assert!((ours / reference - 1.0).abs() < 0.02, "robot {robot}: {name} {ours}, not {reference}");
+            assert!(
+                abs_diff_eq!(ours / reference, 1.0, epsilon = 0.02),
+                "robot {robot}: {name} {ours}, not {reference}"
+            );
         }
     }
 }
@@ -53,7 +57,7 @@ fn range_bearing_known_ids_match_two_independent_programs() {
         let Some(log) = recording(&format!("range_bearing/{name}.txt")) else { return };
         let outcome = run_slam(&log, &["--association", "known"]);
         let (ours, nees) = (outcome.metric("ate_rmse_m"), outcome.metric("nees_mean"));
-        assert!((ours - reference).abs() < 0.001, "{name}: {ours}, not {reference}");
+        assert!(abs_diff_eq!(ours, reference, epsilon = 0.001), "{name}: {ours}, not {reference}");
         assert!((2.0..=4.0).contains(&nees), "{name}: NEES {nees}");
         assert_eq!(outcome.metric("n_landmarks"), n_landmarks);
     }

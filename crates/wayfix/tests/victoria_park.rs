@@ -4,6 +4,7 @@
 
 mod common;
 
+use approx::abs_diff_eq;
 use std::{
     f64::consts::{FRAC_PI_2, TAU},
     fmt::Write,
@@ -99,7 +100,7 @@ fn a_start_that_is_given_goes_before_the_fit() {
     let set = folder(&scratch, "set", 60, true);
     let params = scratch.file("params.toml", "start_pose = [-29.0, 20.0, 1.0]\n"); // a metre beside
     let outcome = run_slam(&set, &["--params", params.to_str().unwrap()]);
-    assert!((outcome.metric("ate_rmse_m") - 1.0).abs() < ROUNDING, "{}", outcome.stdout);
+    assert!(abs_diff_eq!(outcome.metric("ate_rmse_m"), 1.0, epsilon = ROUNDING), "{}", outcome.stdout);
     assert!(outcome.metric("ate_aligned_rmse_m") < ROUNDING);
 }
 

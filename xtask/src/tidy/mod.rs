@@ -15,6 +15,7 @@ pub(crate) mod papers;
 mod purity;
 mod size;
 mod text;
+mod tolerances;
 
 use std::fmt;
 use std::process::ExitCode;
@@ -73,6 +74,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(text::leftovers::check(&sources));
     findings.extend(text::links::check(&sources, &paths));
     findings.extend(names::check(&sources));
+    findings.extend(tolerances::check(&sources));
     findings.extend(text::words::check(&sources));
     findings.extend(text::pages::check(&sources));
     findings.extend(text::figures::check(&sources));

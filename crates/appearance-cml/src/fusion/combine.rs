@@ -87,6 +87,7 @@ fn carried(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     fn hypothesis(weight: f64, pose: [f64; 3], sigmas: [f64; 3]) -> PoseHypothesis {
         let [x, y, heading] = pose;
@@ -100,10 +101,10 @@ mod tests {
             combine(a, b, GaussianFusionRule::WeightedIntersection).unwrap().mean().x()
         };
         let (left, right) = (hypothesis(1.0, [0.0; 3], [0.2; 3]), hypothesis(1.0, [0.1, 0.0, 0.0], [0.2; 3]));
-        assert!((near(&left, &right) - 0.05).abs() < 1e-12, "equals meet half way");
+        assert!(abs_diff_eq!(near(&left, &right), 0.05, epsilon = 1e-12), "equals meet half way");
         let heavy = PoseHypothesis { weight: 3.0, ..right.clone() };
         // α = 3/4 with equal covariances puts the mean at three quarters of the way.
-        assert!((near(&left, &heavy) - 0.075).abs() < 1e-12);
+        assert_abs_diff_eq!(near(&left, &heavy), 0.075, epsilon = 1e-12);
         assert!(near(&left, &hypothesis(1.0, [0.1, 0.0, 0.0], [0.1; 3])) > 0.09);
     }
 

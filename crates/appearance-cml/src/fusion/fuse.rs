@@ -132,6 +132,7 @@ fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis
 
 #[cfg(test)]
 mod tests {
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
     use nalgebra::{Matrix3, Vector3};
     use wayfix_estimation_traits::Pose2;
 
@@ -164,7 +165,11 @@ mod tests {
         let along: f64 =
             (-20_000..20_000).map(|k| 1e-3 * f64::from(k)).map(|x| 1e-3 * density(x) * peak(x)).sum();
         let across = 0.3 / (3.0_f64.powi(2) + 0.3_f64.powi(2)).sqrt() * 0.1 / (2.0 * 0.01_f64).sqrt();
-        assert!((weight / (along * across) - 1.0).abs() < 1e-6, "{weight} and {}", along * across);
+        assert!(
+            abs_diff_eq!(weight / (along * across), 1.0, epsilon = 1e-6),
+            "{weight} and {}",
+            along * across
+        );
     }
 
     #[test]
@@ -191,20 +196,22 @@ mod tests {
         let seen = GaussianMixtureLikelihood { peaks: vec![peak.clone()], floor: FLOOR };
         let (places, left) = fuse(&[], uniform, &seen, &MixtureFusionParams::default()).unwrap();
         let volume = (2.0 * std::f64::consts::PI).powf(1.5) * (0.3 * 0.3 * 0.1);
-        assert!((places[0].weight - 0.5 * volume / 1000.0).abs() < 1e-12);
+        assert_abs_diff_eq!(places[0].weight, 0.5 * volume / 1000.0, epsilon = 1e-12);
         assert_eq!(left.weight, FLOOR);
         // A peak wider than the map tells no place.
         let wide = GaussianMixtureLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
         let (places, left) = fuse(&[], uniform, &wide, &MixtureFusionParams::default()).unwrap();
         let headings = 0.1 / std::f64::consts::TAU.sqrt();
-        assert!(places.is_empty() && (left.weight - 0.5 * headings - FLOOR).abs() < 1e-12);
+        assert_abs_diff_eq!(left.weight - 0.5 * headings, FLOOR, epsilon = 1e-12);
+        assert!(places.is_empty());
         // A source of probability 0.9 takes 0.9 of it, whatever the extent of the map.
         let source = GaussianMixtureLikelihood::of_probabilities(
             vec![PoseHypothesis { weight: 0.9, ..peak }],
             &uniform,
         );
         let (places, left) = fuse(&[], uniform, &source, &MixtureFusionParams::default()).unwrap();
-        assert!((places[0].weight - 0.9).abs() < 1e-12 && (left.weight - 0.1).abs() < 1e-12);
+        assert_abs_diff_eq!(places[0].weight, 0.9, epsilon = 1e-12);
+        assert_abs_diff_eq!(left.weight, 0.1, epsilon = 1e-12);
     }
 
     #[test]

@@ -103,6 +103,7 @@ impl<D> PoseHistory<D> {
 mod tests {
     use super::*;
     use crate::OdometryNoise;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
     use nalgebra::Vector3;
 
     fn at(x: f64) -> Gaussian<Pose2<f64>> {
@@ -137,7 +138,7 @@ mod tests {
         let poses = settled(history(&[None, Some(5.0), None, Some(7.2)]));
         assert_eq!(poses.len(), 4);
         for (x, expected) in poses.iter().zip([4.0, 5.0, 6.1, 7.2]) {
-            assert!((x - expected).abs() < 0.01, "{poses:?}");
+            assert!(abs_diff_eq!(*x, expected, epsilon = 0.01), "{poses:?}");
         }
         assert!(settled(history(&[None, None])).is_empty());
     }
@@ -146,7 +147,7 @@ mod tests {
     fn last_known_pose_goes_on_by_odometry() {
         let mut history = history(&[Some(1.0), None, None]);
         history.pop();
-        assert!((history.oldest_pose().expect("known").mean().x() - 2.0).abs() < 1e-9);
+        assert_abs_diff_eq!(history.oldest_pose().expect("known").mean().x(), 2.0, epsilon = 1e-9);
         assert_eq!(history.length(), 1.0);
     }
 

@@ -55,7 +55,11 @@ impl<D: LowerBoundedDistance> Default for AppearanceIndex<D> {
 
 impl<D: LowerBoundedDistance> AppearanceIndex<D> {
     /// As [`within`](ReferenceSearch::within), and what it took.
-    pub fn within_counted(&self, view: &D, max_distance: f64) -> (Vec<ReferenceMatch>, SearchStatistics) {
+    pub(crate) fn within_counted(
+        &self,
+        view: &D,
+        max_distance: f64,
+    ) -> (Vec<ReferenceMatch>, SearchStatistics) {
         let mut cost = SearchStatistics::default();
         let probe = view.probe();
         let radius = max_distance + BOUND_SLACK;

@@ -33,7 +33,7 @@ impl PoseHypothesis {
     }
 
     /// The components of a normalized mixture.
-    pub fn of_mixture(mixture: &GaussianMixture<Pose2<f64>>) -> Vec<Self> {
+    pub(crate) fn of_mixture(mixture: &GaussianMixture<Pose2<f64>>) -> Vec<Self> {
         let weighted = mixture.weights().into_iter().zip(mixture.components());
         weighted.map(|(weight, gaussian)| Self::new(weight, gaussian.clone())).collect()
     }

@@ -138,6 +138,7 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn pseudo_random(seed: u64, n: usize) -> Vec<(f64, f64)> {
         // Weyl sequences of two irrationals: any spread of coefficients will do.
@@ -156,7 +157,7 @@ mod tests {
                 let scanned = scan.fold(f64::NEG_INFINITY, f64::max);
                 // A scan of that step misses at most (1.6e-4)²/8 · max|f''| ≤ 3.1e-9 · 63³/3 · 0.7 = 2e-4.
                 assert!(value >= scanned - 1e-12 && value <= scanned + 2e-4, "{n} {seed}: {value} {scanned}");
-                assert!((correlation.derivatives(angle)[0] - value).abs() < 1e-10);
+                assert_abs_diff_eq!(correlation.derivatives(angle)[0], value, epsilon = 1e-10);
             }
         }
     }

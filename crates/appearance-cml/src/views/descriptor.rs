@@ -116,7 +116,7 @@ impl PanoramaDescriptor {
     }
 
     /// Whether two descriptors can be compared.
-    pub fn has_shape_of(&self, other: &Self) -> bool {
+    pub(crate) fn has_shape_of(&self, other: &Self) -> bool {
         self.n_rings == other.n_rings && self.n_harmonics == other.n_harmonics
     }
 
@@ -169,6 +169,7 @@ fn place(n_rings: usize, harmonic: usize, part: usize, ring: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn a_blend_lies_between_its_views() {
@@ -178,7 +179,7 @@ mod tests {
         // Steps of a byte are 0.5 / 127 here, and half of one is 0.00197.
         let value = |at: usize| f64::from(blend.scale()) * f64::from(blend.coefficients()[at]);
         for (at, expected) in [(0, 0.1), (1, -0.5), (2, 0.4)] {
-            assert!((value(at) - expected).abs() <= 0.002, "{} {expected}", value(at));
+            assert_abs_diff_eq!(value(at), expected, epsilon = 0.002);
         }
         assert!(a.blend(&PanoramaDescriptor::from_parts(0.01, 1, vec![10]).unwrap(), 0.5).is_none());
     }

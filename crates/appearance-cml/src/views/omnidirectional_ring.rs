@@ -157,6 +157,7 @@ impl Sum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     const SIZE: usize = 101;
 
@@ -187,7 +188,10 @@ mod tests {
         let row = |row| panorama.row(row).copied().collect::<Vec<_>>();
         for column in 1..8 {
             let turn = i32::from(row(0)[column][1]);
-            assert!((turn - 255 * column as i32 / 8).abs() <= 3, "an eighth of a turn is 32: {turn}");
+            assert!(
+                abs_diff_eq!(turn, 255 * column as i32 / 8, epsilon = 3),
+                "an eighth of a turn is 32: {turn}"
+            );
         }
         assert!(row(0).iter().all(|pixel| pixel[0] > 250) && row(1).iter().all(|pixel| pixel[0] < 5));
 
@@ -227,7 +231,7 @@ mod tests {
             }
         }
         assert!(
-            (f64::from(panorama.pixels()[0][0]) - sum / n).abs() <= 1.0,
+            abs_diff_eq!(f64::from(panorama.pixels()[0][0]), sum / n, epsilon = 1.0),
             "{:?} {}",
             panorama.pixels()[0],
             sum / n
@@ -242,7 +246,7 @@ mod tests {
         for column in [90, 180, 450] {
             let turn = i32::from(fine.row(79).nth(column).unwrap()[1]);
             // a pixel at radius 10 is 1/63 of a turn wide: 4 of 255
-            assert!((turn - 255 * column as i32 / 720).abs() <= 4, "{column}: {turn}");
+            assert!(abs_diff_eq!(turn, 255 * column as i32 / 720, epsilon = 4), "{column}: {turn}");
         }
     }
 

@@ -102,13 +102,17 @@ fn direction(k: usize) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     #[test]
     fn directions_are_those_of_the_circle() {
         for k in 0..SIDES {
             let (sin, cos) = (k as f64 * std::f64::consts::TAU / SIDES as f64).sin_cos();
             let got = direction(k);
-            assert!((got.0 - cos).abs() < 1e-15 && (got.1 - sin).abs() < 1e-15, "{k}");
+            assert!(
+                abs_diff_eq!(got.0, cos, epsilon = 1e-15) && abs_diff_eq!(got.1, sin, epsilon = 1e-15),
+                "{k}"
+            );
         }
     }
 
@@ -116,6 +120,6 @@ mod tests {
     fn the_outline_is_as_long_as_the_circle() {
         let prism = Prism::new(0, 1.0, -2.0, 0.05, &PostBand { color: ColorId(0), from: 0.0, to: 0.2 });
         let length: f64 = (0..SIDES).map(|k| (prism.corner(k + 1, 0.0) - prism.corner(k, 0.0)).norm()).sum();
-        assert!((length / (std::f64::consts::TAU * 0.05) - 1.0).abs() < 1e-14);
+        assert_abs_diff_eq!(length / (std::f64::consts::TAU * 0.05), 1.0, epsilon = 1e-14);
     }
 }

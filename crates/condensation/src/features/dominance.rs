@@ -212,6 +212,7 @@ impl Cumulated {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -238,7 +239,7 @@ mod tests {
             let found = classes(&density);
             let total: f64 = density.iter().enumerate().map(|(i, p)| p * (i as f64).powi(2)).sum();
             let within = total - found.iter().map(|(mean, share)| share * mean * mean).sum::<f64>();
-            assert!((within - least_variance_within(&density)).abs() < 1e-8, "seed {seed}");
+            assert!(abs_diff_eq!(within, least_variance_within(&density), epsilon = 1e-8), "seed {seed}");
         }
     }
 

@@ -81,6 +81,7 @@ fn sums_by_grey(view: &View<'_>) -> (Sums, Sums) {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use image::RgbImage;
 
     use super::*;
@@ -102,8 +103,10 @@ mod tests {
         };
         let features = features(DominantGrayCriterion::Classes, scene);
         let [grey, share, x, y, width, height] = features[..6] else { unreachable!() };
-        assert!((grey - 10.0).abs() < 1e-9 && (share - 0.08).abs() < 1e-9, "{grey} {share}");
-        assert!((x - 8.0 / 40.0).abs() < 1e-9 && (y - 21.0 / 30.0).abs() < 1e-9, "{x} {y}");
+        assert_abs_diff_eq!(grey, 10.0, epsilon = 1e-9);
+        assert_abs_diff_eq!(share, 0.08, epsilon = 1e-9);
+        assert_abs_diff_eq!(x, 8.0 / 40.0, epsilon = 1e-9);
+        assert_abs_diff_eq!(y, 21.0 / 30.0, epsilon = 1e-9);
         // The variance of n pixels side by side is (n² - 1) / 12.
         let sides = [(width * 40.0, 8.0_f64), (height * 30.0, 12.0)];
         assert!(sides.iter().all(|(got, n)| (got - (n * n - 1.0).sqrt()).abs() < 1e-9), "{sides:?}");

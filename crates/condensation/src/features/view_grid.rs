@@ -58,7 +58,7 @@ impl ViewGrid {
     }
 
     /// Width and height of the scene, in pixels.
-    pub fn scene_size(&self) -> (usize, usize) {
+    pub(crate) fn scene_size(&self) -> (usize, usize) {
         self.scene
     }
 

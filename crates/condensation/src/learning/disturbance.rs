@@ -29,7 +29,7 @@ impl UnknownShiftAndLight {
     }
 
     /// The light of a condition, changed by this.
-    pub fn applied_to(&self, light: LightChange) -> LightChange {
+    pub(crate) fn applied_to(&self, light: LightChange) -> LightChange {
         LightChange {
             gain: light.gain + self.gain,
             offset: light.offset + self.offset,
@@ -38,7 +38,7 @@ impl UnknownShiftAndLight {
     }
 
     /// In the order of the fields.
-    pub fn from_array([dx, dy, gain, offset, log_gamma]: [f64; N_DISTURBANCES]) -> Self {
+    pub(crate) fn from_array([dx, dy, gain, offset, log_gamma]: [f64; N_DISTURBANCES]) -> Self {
         Self { dx, dy, gain, offset, log_gamma }
     }
 }

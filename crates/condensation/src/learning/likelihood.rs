@@ -132,6 +132,7 @@ fn dot(a: &[f64; N], b: &[f64; N]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::{DMatrix, DVector, SMatrix};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -161,12 +162,12 @@ mod tests {
         let rows: Vec<[f64; N]> = (0..k).map(|i| std::array::from_fn(|j| a[(i, j)])).collect();
         let (squared_distance, log_determinant) = belief.update(&rows, z.as_slice(), 0.7);
         let expected = z.dot(&(innovation.clone().try_inverse().expect("positive definite") * &z));
-        assert!((squared_distance - expected).abs() < 1e-9);
-        assert!((log_determinant - innovation.determinant().ln()).abs() < 1e-9);
+        assert_abs_diff_eq!(squared_distance, expected, epsilon = 1e-9);
+        assert_abs_diff_eq!(log_determinant, innovation.determinant().ln(), epsilon = 1e-9);
         for i in 0..N {
-            assert!((belief.mean[i] - mean[i]).abs() < 1e-9);
+            assert_abs_diff_eq!(belief.mean[i], mean[i], epsilon = 1e-9);
             for j in 0..N {
-                assert!((belief.covariance[i][j] - posterior[(i, j)]).abs() < 1e-9);
+                assert_abs_diff_eq!(belief.covariance[i][j], posterior[(i, j)], epsilon = 1e-9);
             }
         }
     }

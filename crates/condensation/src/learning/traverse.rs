@@ -154,6 +154,7 @@ fn correlation_length(rows: &[Vec<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -171,7 +172,7 @@ mod tests {
             };
             let rows: Vec<Vec<f64>> = (0..20_000).map(|_| next()).collect();
             let length = correlation_length(&rows);
-            assert!((length - expected).abs() < tolerance, "{length} for {a}");
+            assert!(abs_diff_eq!(length, expected, epsilon = tolerance), "{length} for {a}");
         }
     }
 

@@ -56,6 +56,7 @@ impl MomentTransition<'_> {
 mod tests {
     use super::*;
     use crate::SparseTransition;
+    use approx::assert_abs_diff_eq;
 
     fn belief(mean: f64, variance: f64) -> DisturbanceBelief {
         let mut covariance = [[0.0; N_DISTURBANCES]; N_DISTURBANCES];
@@ -70,12 +71,13 @@ mod tests {
         let mut mass = [0.2, 0.2, 0.6];
         let mut disturbances = [belief(1.0, 0.5), belief(7.0, 2.0), belief(3.0, 0.1)];
         MomentTransition { transition: &to_the_middle, leak: 0.0 }.apply(&mut mass, &mut disturbances);
-        assert!((mass[1] - 0.8).abs() < 1e-15 && (mass[2] - 0.2).abs() < 1e-15);
-        assert!((disturbances[2].mean[0] - 7.0).abs() < 1e-12);
-        assert!((disturbances[2].covariance[0][0] - 2.0).abs() < 1e-12);
+        assert_abs_diff_eq!(mass[1], 0.8, epsilon = 1e-15);
+        assert_abs_diff_eq!(mass[2], 0.2, epsilon = 1e-15);
+        assert_abs_diff_eq!(disturbances[2].mean[0], 7.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(disturbances[2].covariance[0][0], 2.0, epsilon = 1e-12);
         // weights 1/4 and 3/4: mean 2.5, within 0.2, between 0.75
-        assert!((disturbances[1].mean[3] - 2.5).abs() < 1e-12);
-        assert!((disturbances[1].covariance[3][3] - 0.95).abs() < 1e-12);
-        assert!((disturbances[1].covariance[3][1] - 0.75).abs() < 1e-12);
+        assert_abs_diff_eq!(disturbances[1].mean[3], 2.5, epsilon = 1e-12);
+        assert_abs_diff_eq!(disturbances[1].covariance[3][3], 0.95, epsilon = 1e-12);
+        assert_abs_diff_eq!(disturbances[1].covariance[3][1], 0.75, epsilon = 1e-12);
     }
 }

@@ -4,4 +4,4 @@ mod light;
 mod tone;
 
 pub use light::LightChange;
-pub use tone::{affine_match, histogram_match, light_match};
+pub use tone::light_match;

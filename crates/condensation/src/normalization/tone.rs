@@ -5,47 +5,6 @@ use crate::features::picture::rgb_pixels;
 /// A share of pixels for each of the 256 values.
 type Shares = [f64; 256];
 
-/// Tables, one a channel, that give `seen` the mean and the standard deviation of `learned`; for [`mapped`](crate::mapped).
-///
-/// A channel without contrast keeps its own and is only moved.
-///
-/// ```
-/// use wayfix_condensation::{LightChange, RgbImage, affine_match, mapped};
-/// let bytes = [40, 80, 160].into_iter().flat_map(|grey| [grey; 3]).collect();
-/// let learned = RgbImage::from_raw(3, 1, bytes).expect("3 bytes a pixel");
-/// let seen = LightChange { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
-/// assert_eq!(mapped(&seen, &affine_match(&seen, &learned)), learned);
-/// # Ok::<(), wayfix_condensation::CondensationError>(())
-/// ```
-pub fn affine_match(seen: &RgbImage, learned: &RgbImage) -> [[u8; 256]; 3] {
-    std::array::from_fn(|channel| {
-        let (mean, sigma) = moments(&shares(seen, channel));
-        let (learned_mean, learned_sigma) = moments(&shares(learned, channel));
-        let gain = if sigma > 0.0 { learned_sigma / sigma } else { 1.0 };
-        std::array::from_fn(|value| rounded((value as f64 - mean) * gain + learned_mean))
-    })
-}
-
-/// Tables, one a channel, that give `seen` the histogram of `learned`; for [`mapped`](crate::mapped).
-///
-/// Each value goes to where its middle rank lies among the learned ranks, interpolated, so that any monotone tone curve is undone.
-///
-/// ```
-/// use wayfix_condensation::{LightChange, RgbImage, histogram_match, mapped};
-/// let bytes = [40, 80, 160].into_iter().flat_map(|grey| [grey; 3]).collect();
-/// let learned = RgbImage::from_raw(3, 1, bytes).expect("3 bytes a pixel");
-/// let seen = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
-/// assert_eq!(mapped(&seen, &histogram_match(&seen, &learned)), learned);
-/// # Ok::<(), wayfix_condensation::CondensationError>(())
-/// ```
-pub fn histogram_match(seen: &RgbImage, learned: &RgbImage) -> [[u8; 256]; 3] {
-    std::array::from_fn(|channel| {
-        let ranks = middle_ranks(&shares(seen, channel));
-        let learned_ranks = middle_ranks(&shares(learned, channel));
-        std::array::from_fn(|value| rounded(value_at(ranks[value], &learned_ranks)))
-    })
-}
-
 fn shares(picture: &RgbImage, channel: usize) -> Shares {
     let mut counts = [0_u64; 256];
     let pixels = rgb_pixels(picture);
@@ -53,12 +12,6 @@ fn shares(picture: &RgbImage, channel: usize) -> Shares {
         counts[usize::from(pixel[channel])] += 1;
     }
     counts.map(|count| count as f64 / pixels.len() as f64)
-}
-
-fn moments(shares: &Shares) -> (f64, f64) {
-    let mean: f64 = shares.iter().enumerate().map(|(value, p)| value as f64 * p).sum();
-    let variance: f64 = shares.iter().enumerate().map(|(value, p)| (value as f64 - mean).powi(2) * p).sum();
-    (mean, variance.sqrt())
 }
 
 /// The share of darker pixels and half of those that are equal.
@@ -80,14 +33,10 @@ fn value_at(rank: f64, ranks: &[f64; 256]) -> f64 {
     (above - 1) as f64 + if high > low { (rank - low) / (high - low) } else { 0.0 }
 }
 
-fn rounded(value: f64) -> u8 {
-    value.round().clamp(0.0, 255.0) as u8
-}
-
 /// The [`LightChange`](crate::LightChange) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
 /// [`LightChange::inverse_table`](crate::LightChange::inverse_table).
 ///
-/// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as [`histogram_match`] does.
+/// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as a matched histogram would.
 /// None when the learned scene has no contrast.
 ///
 /// ```

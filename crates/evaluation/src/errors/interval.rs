@@ -64,13 +64,14 @@ pub fn proportion_interval(successes: u64, trials: u64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn all_or_none_of_the_trials_reach_the_end_of_the_interval() {
         assert_eq!(proportion_interval(0, 10).0, 0.0);
         assert_eq!(proportion_interval(10, 10).1, 1.0);
         // (α/2)^(1/n) is the lower bound if all n trials succeed.
-        assert!((proportion_interval(10, 10).0 - 0.025_f64.powf(0.1)).abs() < 1e-9);
+        assert_abs_diff_eq!(proportion_interval(10, 10).0, 0.025_f64.powf(0.1), epsilon = 1e-9);
         assert_eq!(proportion_interval(0, 0), (0.0, 1.0));
     }
 

@@ -60,6 +60,7 @@ fn nearest(position: &Vector2<f64>, truth: &BTreeMap<u32, Vector2<f64>>) -> Opti
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use wayfix_estimation_traits::LieGroup;
 
     use super::*;
@@ -77,9 +78,9 @@ mod tests {
         let (rmse, aligned) =
             landmark_errors(&estimated, &truth, LandmarkCorrespondence::ById, &Pose2::new(0.0, 0.0, 0.0))
                 .unwrap();
-        assert!((rmse - 0.125_f64.sqrt()).abs() < 1e-12); // (0.3² + 0.4²) / 2
+        assert_abs_diff_eq!(rmse, 0.125_f64.sqrt(), epsilon = 1e-12); // (0.3² + 0.4²) / 2
         // Two points lie on a line of their own length; a rigid motion leaves the difference in length, half at each end.
-        assert!((aligned - 0.5 * (10.0_f64.hypot(0.1) - 10.0)).abs() < 1e-12);
+        assert_abs_diff_eq!(aligned, 0.5 * (10.0_f64.hypot(0.1) - 10.0), epsilon = 1e-12);
         let swapped = map(&[(1, 10.0, 0.0), (2, 0.0, 0.0)]);
         assert!(
             (landmark_errors(&swapped, &truth, LandmarkCorrespondence::ById, &Pose2::new(0.0, 0.0, 0.0))
@@ -105,7 +106,7 @@ mod tests {
         let (rmse, _) =
             landmark_errors(&doubled, &truth, LandmarkCorrespondence::Nearest, &Pose2::new(0.0, 0.0, 0.0))
                 .unwrap();
-        assert!((rmse - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_abs_diff_eq!(rmse, (1.0_f64 / 3.0).sqrt(), epsilon = 1e-12);
     }
 
     #[test]

@@ -65,6 +65,7 @@ fn mean_over_pieces(along: &[f64], error: impl Fn(usize, usize) -> f64) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::Matrix3;
 
     fn turning(scale: f64, n: u32) -> Vec<PoseWithTruth> {
@@ -79,7 +80,7 @@ mod tests {
     #[test]
     fn a_turn_that_is_too_short_errs_per_radian() {
         let errors = relative_errors(&turning(0.9, 20)); // beyond ±π
-        assert!((errors.per_radian.unwrap() - 0.1).abs() < 1e-12, "{errors:?}");
+        assert_abs_diff_eq!(errors.per_radian.unwrap(), 0.1, epsilon = 1e-12);
         assert_eq!(errors.per_meter, None);
     }
 

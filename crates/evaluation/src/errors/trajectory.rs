@@ -78,6 +78,7 @@ pub fn trajectory_errors(samples: &[PoseWithTruth]) -> Option<TrajectoryErrors> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn errors_of_a_path_that_is_shifted_and_turned_by_known_amounts() {
@@ -89,12 +90,12 @@ mod tests {
         };
         let errors = trajectory_errors(&[sample(0.0), sample(1.0), sample(2.0)]).unwrap();
         let turn = 2.0 * (std::f64::consts::PI - 3.1); // across ±π, not 6.2
-        assert!((errors.ate_rmse - 0.3).abs() < 1e-12);
+        assert_abs_diff_eq!(errors.ate_rmse, 0.3, epsilon = 1e-12);
         assert!(errors.ate_aligned_rmse < 1e-12);
-        assert!((errors.heading_rmse - turn).abs() < 1e-12);
+        assert_abs_diff_eq!(errors.heading_rmse, turn, epsilon = 1e-12);
         // (0.3 / 0.2)² from the position, in whatever direction of the body, since its covariance is round; the rest from the heading.
         let nees = 2.25 + (turn / 0.1).powi(2);
-        assert!((errors.nees_mean.unwrap() - nees).abs() < 1e-9, "{errors:?}, not {nees}");
+        assert_abs_diff_eq!(errors.nees_mean.unwrap(), nees, epsilon = 1e-9);
     }
 
     #[test]

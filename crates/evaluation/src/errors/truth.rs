@@ -110,6 +110,7 @@ impl ReferencePath {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn track(rows: &[(u64, f64)]) -> ReferencePath {
         let record = |&(milliseconds, heading): &(u64, f64)| Record {
@@ -124,10 +125,8 @@ mod tests {
         let track = track(&[(0, 3.1), (100, -3.1), (1000, 0.0)]);
         let at = |milliseconds: u64| track.at(Stamp::from_nanoseconds(milliseconds * 1_000_000));
         let middle = at(50).unwrap();
-        assert!(
-            (middle.heading().abs() - std::f64::consts::PI).abs() < 1e-12
-                && (middle.x() - 50.0).abs() < 1e-12
-        );
+        assert_abs_diff_eq!(middle.heading().abs(), std::f64::consts::PI, epsilon = 1e-12);
+        assert_abs_diff_eq!(middle.x(), 50.0, epsilon = 1e-12);
         assert_eq!(at(0).unwrap().heading(), 3.1);
         assert_eq!(at(500), None);
         assert_eq!(at(1000).unwrap().heading(), 0.0);
@@ -137,6 +136,10 @@ mod tests {
     #[test]
     fn leaves_out_what_goes_back_in_time() {
         let track = track(&[(0, 0.0), (200, 0.2), (100, 3.0), (300, 0.3)]);
-        assert!((track.at(Stamp::from_nanoseconds(100_000_000)).unwrap().heading() - 0.1).abs() < 1e-12);
+        assert_abs_diff_eq!(
+            track.at(Stamp::from_nanoseconds(100_000_000)).unwrap().heading(),
+            0.1,
+            epsilon = 1e-12
+        );
     }
 }

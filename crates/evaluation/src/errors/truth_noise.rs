@@ -49,6 +49,7 @@ fn standstill(records: &[Record]) -> Option<(Stamp, Stamp)> {
 mod tests {
     use super::*;
     use crate::errors::ReferencePath;
+    use approx::abs_diff_eq;
 
     fn at(milliseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
@@ -68,7 +69,10 @@ mod tests {
         let poses = [truth(0, 0.0), truth(100, 0.001), truth(200, 0.0), truth(300, 0.001), truth(400, 0.5)];
         let records = [&odometry[..], &poses[..]].concat();
         let noise = *ReferencePath::from_records(&records).noise();
-        assert!((noise.m11 - 0.25e-6).abs() < 1e-12, "half of the variance 0.5e-6 along x: {noise}");
+        assert!(
+            abs_diff_eq!(noise.m11, 0.25e-6, epsilon = 1e-12),
+            "half of the variance 0.5e-6 along x: {noise}"
+        );
         let exact = [&odometry[..], &[truth(0, 0.0), truth(300, 0.0)]].concat();
         assert_eq!(*ReferencePath::from_records(&exact).noise(), Matrix3::zeros());
     }

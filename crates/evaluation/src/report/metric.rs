@@ -92,7 +92,7 @@ impl Metric {
             && self.high.is_none_or(|high| self.value <= high)
     }
     /// Whether it could fail other than by not being finite.
-    pub fn is_bounded(&self) -> bool {
+    pub(crate) fn is_bounded(&self) -> bool {
         self.low.is_some() || self.high.is_some()
     }
 }

@@ -75,7 +75,7 @@ pub struct ReportRun {
 
 impl ReportRun {
     /// Metrics, then timings.
-    pub fn all_metrics(&self) -> impl Iterator<Item = &Metric> {
+    pub(crate) fn all_metrics(&self) -> impl Iterator<Item = &Metric> {
         self.metrics.iter().chain(&self.timings)
     }
 }

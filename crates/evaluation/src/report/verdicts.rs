@@ -76,7 +76,7 @@ impl FullReport {
     }
 
     /// The first run that fails, with its first figure or its error.
-    pub fn first_failure(&self) -> Option<String> {
+    pub(crate) fn first_failure(&self) -> Option<String> {
         let (suite, run) = self.runs().find(|(_, run)| run.tally().failed > 0)?;
         let what = match (&run.error, run.first_failure()) {
             (None, Some(metric)) => against_bounds(metric),
@@ -86,7 +86,7 @@ impl FullReport {
     }
 
     /// Figures that miss a bound which is wanted and does not count yet, with the names of suite and run.
-    pub fn open_metrics(&self) -> impl Iterator<Item = (&str, &str, &Metric)> {
+    pub(crate) fn open_metrics(&self) -> impl Iterator<Item = (&str, &str, &Metric)> {
         self.runs().flat_map(|(suite, run)| {
             let open = run.all_metrics().filter(|metric| metric.open);
             open.map(move |metric| (suite, run.name.as_str(), metric))
@@ -96,7 +96,7 @@ impl FullReport {
 
 impl ReportRun {
     /// The first figure that fails.
-    pub fn first_failure(&self) -> Option<&Metric> {
+    pub(crate) fn first_failure(&self) -> Option<&Metric> {
         self.all_metrics().find(|metric| !metric.passes())
     }
 }

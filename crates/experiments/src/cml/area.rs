@@ -26,7 +26,7 @@ struct Lapped {
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));

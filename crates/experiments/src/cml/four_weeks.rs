@@ -24,7 +24,7 @@ const COURSES: [&str; 6] =
 /// the simulated world.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {

@@ -21,7 +21,7 @@ const COURSES: [&str; 4] = ["passive", "active", "passive_as_published", "active
 /// References in a lab with changing lamps and curtains, with and without active forgetting. [Gross et al. 2005, Table 1]
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {

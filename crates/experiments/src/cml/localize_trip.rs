@@ -13,7 +13,7 @@ const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];
 
 /// Results of a drive, view by view.
 #[derive(Clone, Debug, Default)]
-pub struct SimulatedDriveResult {
+pub(crate) struct SimulatedDriveResult {
     /// The heaviest hypothesis, if there is any.
     pub estimates: Vec<Option<Pose2<f64>>>,
     /// Distance from the truth, metres; infinite without an estimate.
@@ -32,7 +32,7 @@ pub struct SimulatedDriveResult {
 ///
 /// # Errors
 /// Returns an error if it refuses a step.
-pub fn localize_trip(
+pub(crate) fn localize_trip(
     localizer: &mut PanoramaLocalizer,
     trip: &SimulatedDrive,
 ) -> Result<SimulatedDriveResult> {

@@ -40,7 +40,7 @@ const MOST_DRAWS: usize = 1000;
 /// Number of runs with an unknown start in known stores that end near the truth after 20 m.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, map, at, TRAVEL_M)?;
         localize_trip(
@@ -54,7 +54,7 @@ pub fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> 
 /// Number of kidnapped robots, after 20 m of correct tracking, that end near the truth after another 20 m.
 /// # Errors
 /// Returns the errors of [`global_start`].
-pub fn kidnapped(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn kidnapped(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
 }
 
@@ -62,7 +62,7 @@ pub fn kidnapped(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
 /// another place.
 /// # Errors
 /// Returns the errors of [`global_start`].
-pub fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let courses = kidnapped_results(setup, seed, FOLLOWED_M)?;
     let after = |course: &SimulatedDriveResult| {
         course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec)

@@ -4,7 +4,7 @@ use wayfix_appearance_cml::LocalizerParams;
 /// Setup of an experiment.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CmlExperimentSetup {
+pub(crate) struct CmlExperimentSetup {
     /// Number of seeds; each has its own world.
     pub n_seeds: u64,
     /// Length of a drive, metres, where the experiment leaves it open.

@@ -24,7 +24,7 @@ const KIDNAPPED_QUANTILE: f64 = 0.95;
 /// of the whole map for global localization. Times vary from call to call, and other runs of a report run in parallel.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seed = setup.seeds(seed).start;
     let shape =
         RetailStoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..RetailStoreParams::home_store() };

@@ -31,7 +31,7 @@ struct Day {
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
+pub(crate) fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for day in 0..N_DAYS {

@@ -9,14 +9,14 @@ use wayfix_scene_sim::route::Route;
 
 /// A simulated drive as a localizer meets it.
 #[derive(Clone, Debug)]
-pub struct SimulatedDrive {
+pub(crate) struct SimulatedDrive {
     /// View by view.
     pub steps: Vec<SimulatedDriveStep>,
 }
 
 /// One view with the odometry before it.
 #[derive(Clone, Debug)]
-pub struct SimulatedDriveStep {
+pub(crate) struct SimulatedDriveStep {
     /// Since the last view; none at the first.
     pub odometry: Option<Pose2<f64>>,
     /// The truth.
@@ -30,7 +30,7 @@ impl SimulatedDrive {
     ///
     /// # Errors
     /// Returns an error if a parameter of the simulation is out of range.
-    pub fn drive(
+    pub(crate) fn drive(
         building: &Building,
         route: Route,
         params: IndoorDriveParams,
@@ -54,7 +54,7 @@ impl SimulatedDrive {
     }
 
     /// Dead-reckoned poses.
-    pub fn dead_reckoning(&self) -> Vec<Pose2<f64>> {
+    pub(crate) fn dead_reckoning(&self) -> Vec<Pose2<f64>> {
         let Some(first) = self.steps.first() else { return Vec::new() };
         let mut pose = first.pose;
         let mut moved = |step: &SimulatedDriveStep| {

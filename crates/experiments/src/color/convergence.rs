@@ -25,7 +25,7 @@ const LAST_FRAMES: usize = 5;
 
 /// Number of successful runs, each in its own hall under unseen light.
 #[derive(Clone, Debug)]
-pub struct ConvergenceCount {
+pub(crate) struct ConvergenceCount {
     /// Whether the start is known and the robot is kidnapped later, rather than unknown.
     pub kidnapped: bool,
     /// One a seed, in their order.
@@ -34,7 +34,7 @@ pub struct ConvergenceCount {
 
 /// One run.
 #[derive(Clone, Debug)]
-pub struct ConvergenceTrial {
+pub(crate) struct ConvergenceTrial {
     /// Its seed, also of its hall.
     pub seed: u64,
     /// Position error frame by frame, metres.
@@ -46,7 +46,7 @@ pub struct ConvergenceTrial {
 /// Global localization with unknown light.
 /// # Errors
 /// Returns an error if a log cannot be simulated or no image used.
-pub fn global_start(
+pub(crate) fn global_start(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
     bank: &LightingFilterBank,
@@ -67,7 +67,7 @@ pub fn global_start(
 ///
 /// # Errors
 /// Returns the errors of [`global_start`].
-pub fn kidnapped(
+pub(crate) fn kidnapped(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
     bank: &LightingFilterBank,
@@ -118,12 +118,12 @@ fn trial(
 
 impl ConvergenceTrial {
     /// Whether the last frame is near the truth.
-    pub fn is_near_at_end(&self) -> bool {
+    pub(crate) fn is_near_at_end(&self) -> bool {
         self.errors.last().is_some_and(|error| *error <= NEAR_M)
     }
 
     /// Whether the last frames are all near the truth.
-    pub fn succeeded(&self) -> bool {
+    pub(crate) fn succeeded(&self) -> bool {
         let from = self.errors.len().saturating_sub(LAST_FRAMES);
         !self.errors.is_empty() && self.errors[from..].iter().all(|error| *error <= NEAR_M)
     }
@@ -134,7 +134,7 @@ impl ConvergenceCount {
     ///
     /// # Errors
     /// Returns an error if the picture cannot be drawn.
-    pub fn report(&self) -> Result<ReportRun, PlotError> {
+    pub(crate) fn report(&self) -> Result<ReportRun, PlotError> {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();
         let n_near_at_end = self.trials.iter().filter(|trial| trial.is_near_at_end()).count();

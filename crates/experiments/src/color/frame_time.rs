@@ -20,7 +20,7 @@ const N_FRAMES: usize = 40;
 ///
 /// # Errors
 /// Returns an error if no image of the log can be used, or the picture not be drawn.
-pub fn frame_time(
+pub(crate) fn frame_time(
     records: &[Record],
     map: &Arc<ColorMap>,
     bank: &LightingFilterBank,

@@ -18,7 +18,7 @@ use wayfix_systems::color::{ColorSystemParams, run, summarize};
 /// A drive in random halls: means over halls with 95 % intervals.
 /// # Errors
 /// Returns an error if a log cannot be simulated or no image used.
-pub fn other_halls(
+pub(crate) fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
     drive_params: &LeagueParams,
     map: &Arc<ColorMap>,

@@ -7,9 +7,9 @@ mod switching;
 mod training;
 mod withheld;
 
-pub use convergence::{ConvergenceCount, ConvergenceTrial, global_start, kidnapped};
-pub use frame_time::frame_time;
-pub use halls::other_halls;
-pub use switching::switching;
-pub use training::TrainingHalls;
-pub use withheld::{withheld, withheld_in_halls};
+pub(crate) use convergence::{global_start, kidnapped};
+pub(crate) use frame_time::frame_time;
+pub(crate) use halls::other_halls;
+pub(crate) use switching::switching;
+pub(crate) use training::TrainingHalls;
+pub(crate) use withheld::{withheld, withheld_in_halls};

@@ -22,7 +22,7 @@ use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
 /// `switches` are the frames at which the light changes; `bank` has one filter per light, `single` one for all.
 /// # Errors
 /// Returns an error if no image of the log can be used, or a picture not be drawn.
-pub fn switching(
+pub(crate) fn switching(
     records: &[Record],
     switches: &[usize],
     map: &Arc<ColorMap>,

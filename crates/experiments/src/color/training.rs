@@ -24,7 +24,7 @@ const PERIOD_MS: u32 = 2500;
 
 /// Simulated halls with labelled images, each under both lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrainingHalls {
+pub(crate) struct TrainingHalls {
     /// Number of halls. Default 22, which makes 44 venues.
     pub n_halls: usize,
     /// Images of each under each light. Default 8.
@@ -49,7 +49,7 @@ impl TrainingHalls {
     ///
     /// # Errors
     /// Returns an error if learning fails.
-    pub fn learn_priors(&self, k: usize) -> Result<LightingPriors> {
+    pub(crate) fn learn_priors(&self, k: usize) -> Result<LightingPriors> {
         let venues: Vec<TrainingVenue> =
             self.gather(ChaCha8Rng::seed_from_u64(SEED))?.into_iter().map(|(_, venue)| venue).collect();
         let colors = COLOR_NAMES.map(str::to_owned);
@@ -61,7 +61,7 @@ impl TrainingHalls {
     ///
     /// # Errors
     /// Returns an error if there are no images, or a parameter is out of range.
-    pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<(LampSetting, TrainingVenue)>> {
+    pub(crate) fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<(LampSetting, TrainingVenue)>> {
         ensure!(self.n_halls > 0 && self.n_images > 0, "no images of training halls");
         let mut venues = Vec::new();
         let seeds: Vec<[u64; 2]> = (0..self.n_halls).map(|_| [rng.next_u64(), rng.next_u64()]).collect();

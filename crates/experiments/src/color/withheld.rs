@@ -26,7 +26,7 @@ type Rates = [Vec<f64>; 2];
 /// with 95 % intervals; the gain of the joint prior is from differences in the same image.
 /// # Errors
 /// Returns an error if no image of the log can be used.
-pub fn withheld(
+pub(crate) fn withheld(
     records: &[Record],
     map: &Arc<ColorMap>,
     learned: &LightingPriors,
@@ -41,7 +41,7 @@ pub fn withheld(
 /// The same in random halls: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
 /// # Errors
 /// Returns an error if a log cannot be simulated or no image used.
-pub fn withheld_in_halls(
+pub(crate) fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
     drive_params: &LeagueParams,
     map: &Arc<ColorMap>,

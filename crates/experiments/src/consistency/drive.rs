@@ -25,7 +25,7 @@ pub struct ConsistencySample {
 /// Runs a simulated log through one filter from the true start: one entry per scan, from the first one after a motion.
 /// # Errors
 /// Returns an error if the log has no true start, or the filter refuses a simulated measurement.
-pub fn drive(
+pub(crate) fn drive(
     laps: &CorridorLaps,
     records: &[Record],
     kind: ComparedFilter,

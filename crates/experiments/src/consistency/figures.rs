@@ -53,7 +53,7 @@ pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<Consis
 ///
 /// # Errors
 /// Returns an error if `n_runs` is 0, `log` fails, the robot never moves or a filter fails.
-pub fn over_logs(
+pub(crate) fn over_logs(
     laps: &CorridorLaps,
     n_runs: u32,
     log: impl Fn(u32) -> Result<Vec<Record>>,

@@ -8,8 +8,10 @@ mod filter_kind;
 mod laps;
 mod plots;
 
-pub use drive::{ConsistencySample, drive};
-pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo, over_logs};
+pub use drive::ConsistencySample;
+pub(crate) use drive::drive;
+pub(crate) use figures::over_logs;
+pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo};
 pub use filter_kind::ComparedFilter;
 pub use laps::CorridorLaps;
-pub use plots::picture;
+pub(crate) use plots::picture;

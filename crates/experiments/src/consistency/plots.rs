@@ -4,7 +4,7 @@ use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotBand, PlotError, PlotSeri
 /// Average NEES of all filters over time, with the band at any one scan.
 /// # Errors
 /// Returns an error if the picture cannot be drawn.
-pub fn picture(runs: &ConsistencyMonteCarlo) -> Result<SvgPlot, PlotError> {
+pub(crate) fn picture(runs: &ConsistencyMonteCarlo) -> Result<SvgPlot, PlotError> {
     let series = runs.courses.iter().map(|course| {
         let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();
         PlotSeries::new(course.kind.name().replace('_', " "), points)

@@ -9,7 +9,7 @@ use wayfix_table_log::{MoveRow, MovedFrameFolder};
 ///
 /// # Errors
 /// Returns an error if a folder cannot be read or localized.
-pub fn run_logged(folder: &Path) -> Result<ReportRun> {
+pub(crate) fn run_logged(folder: &Path) -> Result<ReportRun> {
     let learned = MovedFrameFolder::read(&folder.join("ref"), None)?;
     let mut drive = MovedFrameFolder::read(&folder.join("query"), None)?;
     for (index, frame) in drive.frames.iter_mut().enumerate() {

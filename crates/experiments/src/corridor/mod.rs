@@ -16,5 +16,5 @@ mod plots;
 mod run;
 mod traverses;
 
-pub use logged::run_logged;
+pub(crate) use logged::run_logged;
 pub use run::run;

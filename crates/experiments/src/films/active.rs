@@ -36,7 +36,7 @@ struct Score {
 ///
 /// # Errors
 /// Returns an error if the film cannot be shown or the tracker cannot begin.
-pub fn active(film: &SyntheticFilm, seeds: Range<u64>, rate: f64) -> Result<ReportRun> {
+pub(crate) fn active(film: &SyntheticFilm, seeds: Range<u64>, rate: f64) -> Result<ReportRun> {
     let one = |seed: u64| follow(&SyntheticFilm { seed, ..*film }, rate);
     let scores = seeds.into_par_iter().map(one).collect::<Result<Vec<_>>>()?;
     let share = |name: &str, of: fn(&Score) -> &Vec<f64>| {

@@ -18,7 +18,7 @@ use wayfix_systems::{
 /// `observe` sees every frame of the first method.
 /// # Errors
 /// Returns an error if a tracker cannot begin, or refuses a frame.
-pub fn follow(
+pub(crate) fn follow(
     film: &SyntheticFilm,
     methods: &[TrackingMethod],
     params: &TrackParams,

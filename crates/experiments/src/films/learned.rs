@@ -25,7 +25,7 @@ const N_TRAINING: usize = 640;
 ///
 /// # Errors
 /// Returns an error if a tracker cannot begin or the training film leaves the dynamics open.
-pub fn learned(
+pub(crate) fn learned(
     film: &SyntheticFilm,
     seeds: Range<u64>,
     params: &ColorContourTrackerParams,

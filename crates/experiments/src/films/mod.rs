@@ -6,8 +6,8 @@ mod learned;
 mod score;
 mod table;
 
-pub use active::active;
-pub use follow::follow;
-pub use learned::learned;
+pub(crate) use active::active;
+pub(crate) use follow::follow;
+pub(crate) use learned::learned;
 pub use score::FilmTrackingScore;
 pub use table::table;

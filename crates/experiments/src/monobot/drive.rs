@@ -10,7 +10,7 @@ use super::{FixedPositionSensor, WorldReference};
 
 /// Estimate and truth after one scan: of the first landmark, and of the mean over all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MonobotStep {
+pub(crate) struct MonobotStep {
     /// True position of the robot, m.
     pub true_position: f64,
     /// Estimated position of the robot, m.
@@ -29,7 +29,7 @@ pub struct MonobotStep {
 
 /// One drive through the filter.
 #[derive(Clone, Debug)]
-pub struct MonobotDrive {
+pub(crate) struct MonobotDrive {
     /// One step per scan; the first one initializes the landmarks.
     pub steps: Vec<MonobotStep>,
     /// True place of the landmarks, m.
@@ -54,7 +54,11 @@ pub(crate) fn plain_filter() -> SlamParams {
 ///
 /// # Errors
 /// Returns an error if the filter refuses a simulated measurement.
-pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: WorldReference) -> Result<MonobotDrive> {
+pub(crate) fn drive(
+    params: &MonobotParams,
+    run: &MonobotRun,
+    reference: WorldReference,
+) -> Result<MonobotDrive> {
     let sensor = LineDistanceSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_sigma_share };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_sigma_share };
     let camera = FixedPositionSensor(params.external_position_sigma_m);

@@ -8,7 +8,7 @@ use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 /// Many drives with the same parameters and different noise.
 #[derive(Clone, Debug)]
-pub struct MonobotMonteCarlo {
+pub(crate) struct MonobotMonteCarlo {
     /// One a seed.
     pub drives: Vec<MonobotDrive>,
 }
@@ -17,7 +17,7 @@ pub struct MonobotMonteCarlo {
 ///
 /// # Errors
 /// Returns an error if `n_runs` is below 2, a parameter is out of range or the filter fails.
-pub fn monte_carlo(
+pub(crate) fn monte_carlo(
     params: &MonobotParams,
     reference: WorldReference,
     n_runs: u64,
@@ -34,12 +34,12 @@ pub fn monte_carlo(
 
 impl MonobotMonteCarlo {
     /// Root mean square of the mean landmark error at the end, m.
-    pub fn end_rms(&self) -> f64 {
+    pub(crate) fn end_rms(&self) -> f64 {
         root_mean_square(&self.errors(|drive| drive.steps.len() - 1))
     }
 
     /// The figures of the paper's Figs. 4-6.
-    pub fn metrics(&self) -> Vec<Metric> {
+    pub(crate) fn metrics(&self) -> Vec<Metric> {
         let (first, end) = (self.errors(|_| 0), self.errors(|drive| drive.steps.len() - 1));
         let claimed: Vec<f64> =
             self.drives.iter().filter_map(|drive| Some(drive.steps.last()?.landmark_sigma)).collect();

@@ -11,7 +11,7 @@ use wayfix_slam_ekf::{
 /// The system is linear with constant noise, so the information does not depend on the measurements.
 /// # Errors
 /// Returns an error if the filter refuses, which it has no reason to.
-pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
+pub(crate) fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
     let sensor = LineDistanceSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };
     let start = (Vector1::zeros(), Matrix1::identity());

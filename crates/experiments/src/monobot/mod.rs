@@ -6,9 +6,9 @@ mod fisher;
 mod plots;
 mod reference;
 
-pub(crate) use drive::plain_filter;
-pub use drive::{MonobotDrive, MonobotStep, drive};
-pub use figures::{MonobotMonteCarlo, monte_carlo};
-pub use fisher::{expected_rate, first_entry};
-pub use plots::{fisher_plot, plots};
-pub use reference::{FixedPositionSensor, WorldReference};
+pub(crate) use drive::{MonobotDrive, MonobotStep, drive, plain_filter};
+pub(crate) use figures::monte_carlo;
+pub use fisher::expected_rate;
+pub(crate) use fisher::first_entry;
+pub(crate) use plots::{fisher_plot, plots};
+pub(crate) use reference::{FixedPositionSensor, WorldReference};

@@ -5,7 +5,7 @@ use wayfix_evaluation::plot::{LinePlot, PlotError, PlotSeries, SvgPlot};
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
+pub(crate) fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
     let line = |value: &dyn Fn(&MonobotStep) -> f64| -> Vec<(f64, f64)> {
         drive.steps.iter().enumerate().map(|(k, step)| (k as f64, value(step))).collect()
     };
@@ -50,7 +50,7 @@ pub fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
 ///
 /// # Errors
 /// Returns an error if the filter or the picture refuses.
-pub fn fisher_plot(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<SvgPlot> {
+pub(crate) fn fisher_plot(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<SvgPlot> {
     let series = |n: &u32| {
         let points =
             first_entry(*n, n_steps)?.into_iter().enumerate().map(|(k, entry)| (k as f64 + 1.0, entry));

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::SensorModel;
 /// Reference of the monobot's map to the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum WorldReference {
+pub(crate) enum WorldReference {
     /// None: the standard filter. [Andrade-Cetto 2005, Eq. 17, Fig. 4]
     None,
     /// A landmark at the origin with known position. [Andrade-Cetto 2005, Eqs. 20–22, Fig. 5]
@@ -16,7 +16,7 @@ pub enum WorldReference {
 
 /// A fixed sensor that measures where the robot is on its line; its standard deviation in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FixedPositionSensor(pub f64);
+pub(crate) struct FixedPositionSensor(pub f64);
 
 impl SensorModel for FixedPositionSensor {
     type State = Vector1<f64>;

@@ -10,7 +10,11 @@ use wayfix_evaluation::report::{FullReport, MachineInfo, ReportRun, ReportSuite,
 ///
 /// # Errors
 /// Returns an error if a plan or the blessed figures cannot be read or written.
-pub fn assemble(options: &RegressOptions, shard: CampaignShard, done: &[CompletedRun]) -> Result<FullReport> {
+pub(crate) fn assemble(
+    options: &RegressOptions,
+    shard: CampaignShard,
+    done: &[CompletedRun],
+) -> Result<FullReport> {
     let is_pending = |cell: &SeededRun| !done.iter().any(|done| done.cell == *cell);
     let pending: Vec<SeededRun> = shard.share(cells(options)?).into_iter().filter(is_pending).collect();
     let suites = options.selection.suites.iter();

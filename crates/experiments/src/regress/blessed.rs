@@ -8,7 +8,7 @@ use wayfix_evaluation::report::{Metric, ReportRun};
 ///
 /// They are not bounds: a difference shows that a code change affected a figure. `--bless` rewrites them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReferenceFigures(BTreeMap<String, BTreeMap<String, f64>>);
+pub(crate) struct ReferenceFigures(BTreeMap<String, BTreeMap<String, f64>>);
 
 /// Another machine may round the last digits differently; a change of the mathematics shows far above this.
 const RELATIVE_TOLERANCE: f64 = 1e-6;
@@ -17,7 +17,7 @@ impl ReferenceFigures {
     /// Reads the figures; empty if the file does not exist.
     /// # Errors
     /// Returns an error if the file is there and cannot be read.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         if !path.exists() {
             return Ok(Self::default());
         }
@@ -29,7 +29,7 @@ impl ReferenceFigures {
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
-    pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a ReportRun>) -> Result<()> {
+    pub(crate) fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a ReportRun>) -> Result<()> {
         let figures =
             |run: &ReportRun| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();
         let all: BTreeMap<String, BTreeMap<String, f64>> =
@@ -39,7 +39,7 @@ impl ReferenceFigures {
     }
 
     /// Number of figures of a run that differ from the reference, as a figure that must be 0.
-    pub fn compare(&self, run: &ReportRun) -> Option<Metric> {
+    pub(crate) fn compare(&self, run: &ReportRun) -> Option<Metric> {
         let blessed = self.0.get(&run.name)?;
         let differs = |metric: &&Metric| match blessed.get(&metric.name) {
             Some(value) => (metric.value - value).abs() > RELATIVE_TOLERANCE * value.abs().max(1e-9),

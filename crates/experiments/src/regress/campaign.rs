@@ -5,7 +5,7 @@ use super::{PlannedJob, PlannedRun, RegressOptions, SuitePlan};
 
 /// One run with one seed: the piece of work that a shard takes or leaves.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct SeededRun {
+pub(crate) struct SeededRun {
     /// Name of the suite.
     pub suite: String,
     /// Name of the planned run.
@@ -17,7 +17,7 @@ pub struct SeededRun {
 /// All requested work, in the order of the report: run by run, seed by seed.
 /// # Errors
 /// Returns an error if a plan cannot be read.
-pub fn cells(options: &RegressOptions) -> Result<Vec<SeededRun>> {
+pub(crate) fn cells(options: &RegressOptions) -> Result<Vec<SeededRun>> {
     let mut cells = Vec::new();
     for suite in &options.selection.suites {
         let plan = SuitePlan::read(&options.fixtures, suite)?;

@@ -11,7 +11,7 @@ use super::{RegressOptions, SeededRun};
 /// The seconds are those of the machine that measured them. A short computation that was timed there and is timed here scales them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RunCosts {
+pub(crate) struct RunCosts {
     /// Seconds of the short computation on that machine.
     calibration_s: f64,
     /// Seconds of each run with the stored logs only, as `suite/run`.
@@ -22,7 +22,7 @@ pub struct RunCosts {
 
 /// An estimate of the time that some runs take here.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EstimatedTime {
+pub(crate) struct EstimatedTime {
     /// Number of runs.
     pub n_runs: usize,
     /// Seconds of computing of the runs whose cost is known.
@@ -33,7 +33,7 @@ pub struct EstimatedTime {
 
 impl EstimatedTime {
     /// The estimate in words, for `n_threads` at a time.
-    pub fn told(&self, n_threads: usize) -> String {
+    pub(crate) fn told(&self, n_threads: usize) -> String {
         let Self { n_runs, seconds, n_unknown } = *self;
         let minutes = seconds / n_threads.max(1) as f64 / 60.0;
         let time = match n_unknown {
@@ -54,7 +54,7 @@ impl RunCosts {
     /// Reads the costs; empty if the file does not exist.
     /// # Errors
     /// Returns an error if the file is there and cannot be read.
-    pub fn read(fixtures: &Path) -> Result<Self> {
+    pub(crate) fn read(fixtures: &Path) -> Result<Self> {
         let path = fixtures.join(FILE);
         if !path.exists() {
             return Ok(Self::default());
@@ -64,7 +64,7 @@ impl RunCosts {
     }
 
     /// Computing time of `runs` here, if the short computation takes `calibration_s` here.
-    pub fn estimate(&self, quick: bool, runs: &[SeededRun], calibration_s: f64) -> EstimatedTime {
+    pub(crate) fn estimate(&self, quick: bool, runs: &[SeededRun], calibration_s: f64) -> EstimatedTime {
         let costs = if quick { &self.quick } else { &self.full };
         let known: Vec<f64> = runs.iter().filter_map(|run| costs.get(&name(run)).copied()).collect();
         let is_known = self.calibration_s > 0.0 && calibration_s > 0.0;
@@ -80,7 +80,11 @@ impl RunCosts {
     ///
     /// # Errors
     /// Returns an error if the file cannot be read or written.
-    pub fn store(options: &RegressOptions, runs: &[(SeededRun, f64)], calibration_s: f64) -> Result<()> {
+    pub(crate) fn store(
+        options: &RegressOptions,
+        runs: &[(SeededRun, f64)],
+        calibration_s: f64,
+    ) -> Result<()> {
         let mut all = Self::read(&options.fixtures)?;
         let factor = if all.calibration_s > 0.0 { all.calibration_s / calibration_s } else { 1.0 };
         if all.calibration_s <= 0.0 {
@@ -101,14 +105,14 @@ fn name(run: &SeededRun) -> String {
 }
 
 /// Seconds that this thread has computed so far, which other programs do not lengthen; 0 where the system does not tell.
-pub fn thread_seconds() -> f64 {
+pub(crate) fn thread_seconds() -> f64 {
     let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = text.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
     nanoseconds.map_or(0.0, |nanoseconds| 1e-9 * nanoseconds)
 }
 
 /// Seconds of a short computation, the shortest of several: the measure of a machine. 0 where the system does not tell.
-pub fn calibration_seconds() -> f64 {
+pub(crate) fn calibration_seconds() -> f64 {
     const REPEATS: usize = 5;
     let once = |_| {
         let start = thread_seconds();
@@ -126,6 +130,7 @@ pub fn calibration_seconds() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn run(name: &str) -> SeededRun {
         SeededRun { suite: "slam".to_owned(), run: name.to_owned(), seed: 1 }
@@ -137,7 +142,7 @@ mod tests {
         let costs = RunCosts { calibration_s: 0.1, full, ..RunCosts::default() };
         let estimate = costs.estimate(false, &[run("a"), run("b"), run("c")], 0.2);
         assert_eq!((estimate.n_runs, estimate.n_unknown), (3, 1));
-        assert!((estimate.seconds - 8.0).abs() < 1e-12, "{estimate:?}");
+        assert_abs_diff_eq!(estimate.seconds, 8.0, epsilon = 1e-12);
         assert_eq!(costs.estimate(true, &[run("a")], 0.2).n_unknown, 1);
     }
 

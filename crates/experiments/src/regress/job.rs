@@ -9,7 +9,7 @@ use super::{PlannedRun, RegressOptions};
 
 /// A run of a plan with its inputs.
 #[derive(Clone, Debug)]
-pub struct PlannedJob<'a> {
+pub(crate) struct PlannedJob<'a> {
     /// Command-line options.
     pub options: &'a RegressOptions,
     /// The run.
@@ -22,12 +22,12 @@ impl PlannedJob<'_> {
     /// Path of its log.
     /// # Errors
     /// Returns an error if the plan names none.
-    pub fn log(&self) -> Result<&PathBuf> {
+    pub(crate) fn log(&self) -> Result<&PathBuf> {
         self.path.as_ref().with_context(|| format!("run {}: give `log` or `data`", self.planned.name))
     }
 
     /// Name and place of the estimates that the run writes beside the report.
-    pub fn estimates_file(&self) -> (String, PathBuf) {
+    pub(crate) fn estimates_file(&self) -> (String, PathBuf) {
         let seed = self.options.seed;
         let name = match &self.planned.name {
             name if self.options.n_seeds > 1 => format!("{name}-seed-{seed}.mcap"),
@@ -40,13 +40,13 @@ impl PlannedJob<'_> {
     /// Path of a file of the recordings.
     /// # Errors
     /// Returns an error if there is no folder of recordings.
-    pub fn recording(&self, file: &Path) -> Result<PathBuf> {
+    pub(crate) fn recording(&self, file: &Path) -> Result<PathBuf> {
         let data = self.options.data.as_ref().context("recordings need `--data`")?;
         Ok(data.join(file))
     }
 
     /// Path of a file beside the plan.
-    pub fn beside_plan(&self, file: &Path) -> PathBuf {
+    pub(crate) fn beside_plan(&self, file: &Path) -> PathBuf {
         self.options.fixtures.join(file)
     }
 
@@ -54,7 +54,7 @@ impl PlannedJob<'_> {
     ///
     /// # Errors
     /// Returns an error if it cannot be read.
-    pub fn read(&self, file: &Path) -> Result<String> {
+    pub(crate) fn read(&self, file: &Path) -> Result<String> {
         let path = self.beside_plan(file);
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
     }

@@ -56,6 +56,7 @@ fn means(done: &[&CompletedRun], figures: impl Fn(&ReportRun) -> &Vec<Metric>) -
 mod tests {
     use super::*;
     use crate::regress::SeededRun;
+    use approx::assert_abs_diff_eq;
 
     fn done(seed: u64, value: f64) -> CompletedRun {
         let cell = SeededRun { suite: "s".to_owned(), run: "r".to_owned(), seed };
@@ -74,8 +75,9 @@ mod tests {
         let done = [done(1, 0.9), done(2, 1.0), done(3, 0.8), done(4, 0.9)];
         let run = over_seeds(&done.iter().collect::<Vec<_>>()).unwrap();
         let spread = run.metrics[0].spread.unwrap();
-        assert!((run.metrics[0].value - 0.9).abs() < 1e-12 && spread.n == 4);
-        assert!((spread.half_width - 0.1299).abs() < 1e-4); // t(0.975, 3) = 3.182 times 0.0816 / √4
+        assert_abs_diff_eq!(run.metrics[0].value, 0.9, epsilon = 1e-12);
+        assert!(spread.n == 4);
+        assert_abs_diff_eq!(spread.half_width, 0.1299, epsilon = 1e-4); // t(0.975, 3) = 3.182 times 0.0816 / √4
         assert_eq!((run.events["lost"], run.seconds), (10, 4.0));
     }
 

@@ -13,7 +13,7 @@ use wayfix_evaluation::report::{ReportRun, commit, replace_file};
 /// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ShardResults {
+pub(crate) struct ShardResults {
     /// The work of all shards together; equal in all of them.
     campaign: Campaign,
     /// The runs of this shard.
@@ -47,7 +47,7 @@ impl ShardResults {
     /// The results of `shard`.
     /// # Errors
     /// Returns an error if a plan cannot be read.
-    pub fn new(options: &RegressOptions, shard: CampaignShard, done: &[CompletedRun]) -> Result<Self> {
+    pub(crate) fn new(options: &RegressOptions, shard: CampaignShard, done: &[CompletedRun]) -> Result<Self> {
         let campaign = Campaign {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: commit(&options.fixtures),
@@ -75,7 +75,7 @@ impl ShardResults {
     ///
     /// # Errors
     /// Returns an error if it cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<PathBuf> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<PathBuf> {
         let path = folder.join(FILE);
         replace_file(&path, serde_json::to_string(self)?)
             .with_context(|| format!("cannot write {}", path.display()))?;
@@ -86,7 +86,7 @@ impl ShardResults {
     ///
     /// # Errors
     /// Returns an error if it is missing or is no part.
-    pub fn read(folder: &Path) -> Result<Self> {
+    pub(crate) fn read(folder: &Path) -> Result<Self> {
         let path = folder.join(FILE);
         let text = fs::read(&path).with_context(|| {
             format!(
@@ -111,7 +111,7 @@ impl ShardResults {
     ///
     /// # Errors
     /// Returns an error if the file is of another campaign or not usable.
-    pub fn finished(
+    pub(crate) fn finished(
         folder: &Path,
         options: &RegressOptions,
         shard: CampaignShard,
@@ -134,7 +134,7 @@ impl ShardResults {
 ///
 /// # Errors
 /// Returns an error if the parts are of different campaigns, one is missing, or the same work was done twice. The message says which.
-pub fn join(
+pub(crate) fn join(
     parts: Vec<(PathBuf, ShardResults)>,
     fixtures: &Path,
     out: &Path,

@@ -11,7 +11,7 @@ use wayfix_evaluation::report::{Metric, ReportRun};
 /// Runs of a suite with their bounds: a TOML file beside the stored logs.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SuitePlan {
+pub(crate) struct SuitePlan {
     /// In the order of the report.
     pub run: Vec<PlannedRun>,
     /// Means over runs; skipped if a run is missing.
@@ -22,7 +22,7 @@ pub struct SuitePlan {
 /// The mean of the figures of several runs.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PlannedMean {
+pub(crate) struct PlannedMean {
     /// Its name, unique in the suite.
     pub name: String,
     /// Names of the runs.
@@ -36,7 +36,7 @@ pub struct PlannedMean {
 
 /// One log, or one experiment that makes its own, through one system.
 #[derive(Clone, Debug, Deserialize)]
-pub struct PlannedRun {
+pub(crate) struct PlannedRun {
     /// Its name, unique in the suite.
     pub name: String,
     /// A stored log, relative to the folder of the plan.
@@ -59,7 +59,7 @@ pub struct PlannedRun {
 /// Bounds of a figure, and values to compare it with.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MetricBound {
+pub(crate) struct MetricBound {
     /// Name of the figure.
     pub metric: String,
     /// Smallest value that passes.
@@ -84,7 +84,7 @@ impl SuitePlan {
     ///
     /// # Errors
     /// Returns an error if it cannot be read, or a run names both a stored log and a recording.
-    pub fn read(folder: &Path, suite: &str) -> Result<Self> {
+    pub(crate) fn read(folder: &Path, suite: &str) -> Result<Self> {
         let path = folder.join(suite).with_extension("toml");
         let text =
             fs::read_to_string(&path).with_context(|| format!("cannot read the plan {}", path.display()))?;
@@ -101,7 +101,7 @@ impl PlannedRun {
     /// The suite's settings of the run.
     /// # Errors
     /// Returns an error if a key is unknown or its value is of another kind.
-    pub fn settings<T: DeserializeOwned>(&self) -> Result<T> {
+    pub(crate) fn settings<T: DeserializeOwned>(&self) -> Result<T> {
         let settings = self.settings.clone().try_into();
         settings.with_context(|| format!("the settings of run {} are not usable", self.name))
     }
@@ -109,7 +109,7 @@ impl PlannedRun {
 
 impl PlannedMean {
     /// The mean over `runs`; `None` if one of them did not run.
-    pub fn over(&self, runs: &[ReportRun]) -> Option<ReportRun> {
+    pub(crate) fn over(&self, runs: &[ReportRun]) -> Option<ReportRun> {
         let members: Option<Vec<&ReportRun>> =
             self.of.iter().map(|name| runs.iter().find(|run| &run.name == name)).collect();
         let members = members?;

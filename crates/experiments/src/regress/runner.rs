@@ -13,7 +13,7 @@ use wayfix_systems::system::Stopwatch;
 
 /// Work to do and output folder.
 #[derive(Clone, Debug)]
-pub struct RegressOptions {
+pub(crate) struct RegressOptions {
     /// Suites and runs by name.
     pub selection: RunSelection,
     /// Folder of the stored logs and plans.
@@ -41,7 +41,7 @@ impl RegressOptions {
 
 /// A piece of work that is done.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CompletedRun {
+pub(crate) struct CompletedRun {
     /// Which piece.
     pub cell: SeededRun,
     /// The result, without bounds.
@@ -55,7 +55,7 @@ pub struct CompletedRun {
 /// # Errors
 /// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error, and so is one that
 /// panics: the others go on.
-pub fn run_shard(
+pub(crate) fn run_shard(
     options: &RegressOptions,
     shard: CampaignShard,
     finished: &[SeededRun],

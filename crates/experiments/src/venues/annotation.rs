@@ -89,6 +89,7 @@ impl BallCore {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn core(line: &str) -> Option<BallCore> {
         read_boxes(line, 600, 800).unwrap()[0].ball_core(600, 800)
@@ -104,9 +105,10 @@ mod tests {
     #[test]
     fn a_ball_cut_by_the_border_is_continued_to_a_circle() {
         let ball = core("0 0.5 0.975 0.2 0.05").unwrap();
-        assert!((ball.center.1 - 820.0).abs() < 1e-9 && (ball.radii.1 - 45.0).abs() < 1e-9, "{ball:?}");
+        assert_abs_diff_eq!(ball.center.1, 820.0, epsilon = 1e-9);
+        assert_abs_diff_eq!(ball.radii.1, 45.0, epsilon = 1e-9);
         let ball = core("0 0.99 0.5 0.02 0.05").unwrap();
-        assert!((ball.center.0 - 608.0).abs() < 1e-9, "{ball:?}");
+        assert_abs_diff_eq!(ball.center.0, 608.0, epsilon = 1e-9);
     }
 
     #[test]

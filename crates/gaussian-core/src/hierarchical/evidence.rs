@@ -80,7 +80,7 @@ impl PooledGroupEstimate {
     /// The part of the observations' log density in which $`θ_j`$ does not occur: how well they agree with each other.
     ///
     /// $`\prod_i N(y_i; θ, v_i) = N(\bar y; θ, \bar v) · e^{a}`$ with this $`a`$.
-    pub fn log_agreement(&self) -> LogWeight {
+    pub(crate) fn log_agreement(&self) -> LogWeight {
         self.log_agreement
     }
 }

@@ -75,6 +75,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Matrix2, Vector2};
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
@@ -98,7 +99,11 @@ mod tests {
             assert!(mean[i].abs() < 5.0 * (covariance[(i, i)] / count).sqrt());
             for j in 0..2 {
                 let variance = covariance[(i, i)] * covariance[(j, j)] + covariance[(i, j)].powi(2);
-                assert!((scatter[(i, j)] - covariance[(i, j)]).abs() < 5.0 * (variance / count).sqrt());
+                assert_abs_diff_eq!(
+                    scatter[(i, j)],
+                    covariance[(i, j)],
+                    epsilon = 5.0 * (variance / count).sqrt()
+                );
             }
         }
     }

@@ -36,6 +36,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Matrix2, Matrix3, Vector3};
 
     #[test]
@@ -44,7 +45,7 @@ mod tests {
         let b = Vector3::new(2.0, -4.0, 5.0);
         let singular: Matrix3<f64> = a * a.transpose() + b * b.transpose();
         let l = semidefinite_factor(&singular);
-        assert!((l * l.transpose() - singular).norm() < 1e-13 * singular.norm());
+        assert_abs_diff_eq!(l * l.transpose(), singular, epsilon = 1e-13 * singular.norm());
         assert_eq!(semidefinite_factor(&Matrix2::<f64>::zeros()), Matrix2::zeros());
     }
 }

@@ -59,14 +59,6 @@ where
         symmetrize(&mut covariance);
         Ok(Self { mean, covariance, cross_covariance })
     }
-
-    /// The transformed Gaussian.
-    ///
-    /// # Errors
-    /// Returns an error if the covariance is singular.
-    pub fn into_gaussian(self) -> Result<Gaussian<Z>, GaussianError> {
-        Gaussian::new(self.mean, self.covariance)
-    }
 }
 
 /// Moments of weighted points: mean on the manifold, covariance at the mean.
@@ -106,6 +98,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use nalgebra::{Vector1, Vector3};
     use wayfix_estimation_traits::{Angle, Pose2};
 
@@ -118,9 +111,9 @@ mod tests {
                 Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.3), &Vector3::new(0.1, 0.1, sigma)).unwrap();
             let same = UnscentedTransform::new(&wide, Pose2::clone, &UnscentedParams::default()).unwrap();
             let heading: f64 = same.mean.heading();
-            assert!((heading - 0.3).abs() < 1e-9, "{sigma}: {heading}");
+            assert!(abs_diff_eq!(heading, 0.3, epsilon = 1e-9), "{sigma}: {heading}");
             let found: f64 = same.covariance.m33;
-            assert!((found.sqrt() - sigma).abs() < 1e-9, "{sigma}: {found}");
+            assert!(abs_diff_eq!(found.sqrt(), sigma, epsilon = 1e-9), "{sigma}: {found}");
         }
     }
 

@@ -124,6 +124,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Vector1, Vector2, dvector};
     use wayfix_estimation_traits::{Angle, Pose2};
 
@@ -132,7 +133,7 @@ mod tests {
         for origin in [0.0, 1e3, 1e9, -1e15] {
             let at = |x: f64, y: f64| Vector2::new(origin + x, origin - y);
             let mean = weighted_mean(&[at(0.0, 0.0), at(4.0, 2.0)], &[1.0, 3.0]).unwrap();
-            assert!((mean - at(3.0, 1.5)).norm() <= 2.0 * f64::EPSILON * (1.0 + origin.abs()));
+            assert_abs_diff_eq!(mean, at(3.0, 1.5), epsilon = 2.0 * f64::EPSILON * (1.0 + origin.abs()));
         }
     }
 

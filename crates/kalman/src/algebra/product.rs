@@ -165,6 +165,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use nalgebra::{DMatrix, Matrix2, Matrix2x4, Matrix4, SMatrix, convert};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -201,7 +202,7 @@ mod tests {
             // Sums of some 20 products, each below (1 + ‖K‖‖H‖)² ‖P‖ + ‖K‖² ‖R‖.
             let size = (1.0 + gain.norm() * jacobian.norm()).powi(2) * prior.norm()
                 + gain.norm_squared() * noise.norm();
-            assert!((found - expected).norm() < 20.0 * f64::EPSILON * size, "case {case}");
+            assert!(abs_diff_eq!(found, expected, epsilon = 20.0 * f64::EPSILON * size), "case {case}");
             assert_eq!(found, found.transpose());
         }
     }

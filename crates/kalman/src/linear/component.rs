@@ -77,6 +77,7 @@ fn check_measurement<T: RealField + Copy>(i: usize, n: usize, measurement: T, va
 mod tests {
     use super::*;
     use crate::{KalmanFilter, LinearMotion, LinearSensor};
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Matrix1, Matrix3, RowVector3, Vector1, Vector3};
     use wayfix_gaussian_core::Gaussian;
 
@@ -93,8 +94,8 @@ mod tests {
             row[i] = 1.0;
             let sensor = LinearSensor::new(row, Matrix1::new(0.25)).unwrap();
             filter.update(&sensor, &Vector1::new(0.5)).unwrap();
-            assert!((filter.estimate().mean() - mean).amax() < 1e-14);
-            assert!((filter.estimate().covariance() - covariance).amax() < 1e-14);
+            assert_abs_diff_eq!(*filter.estimate().mean(), mean, epsilon = 1e-14);
+            assert_abs_diff_eq!(*filter.estimate().covariance(), covariance, epsilon = 1e-14);
         }
     }
 

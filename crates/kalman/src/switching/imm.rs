@@ -59,11 +59,6 @@ where
         self.belief.model_probabilities()
     }
 
-    /// The belief if `model` is active; `None` if there is no such model.
-    pub fn model_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
-        self.belief.hypotheses.get(model).map(|hypothesis| hypothesis.belief.clone().into())
-    }
-
     /// The belief over all models, moment-matched.
     ///
     /// # Errors

@@ -59,6 +59,7 @@ impl RangeBearingNoise {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn the_weight_is_the_inverse_of_the_covariance_along_the_normal() {
@@ -67,7 +68,7 @@ mod tests {
             let point = Vector2::new(f64::from(k) - 20.0, 0.5 * f64::from(k) + 0.1);
             let normal = Vector2::new((0.3 * f64::from(k)).cos(), (0.3 * f64::from(k)).sin());
             let variance = normal.dot(&(noise.covariance(&point) * normal));
-            assert!((noise.weight(&point, &normal) * variance - 1.0).abs() < 1e-9);
+            assert_abs_diff_eq!(noise.weight(&point, &normal) * variance, 1.0, epsilon = 1e-9);
         }
     }
 }

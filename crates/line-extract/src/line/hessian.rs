@@ -92,13 +92,15 @@ impl From<HessianLine> for Raw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn every_form_of_a_line_becomes_one() {
         for turns in -3..=3 {
             for (rho, alpha) in [(1.5, 0.7), (-1.5, 0.7 + PI), (-1.5, 0.7 - PI)] {
                 let line = HessianLine::new(rho, alpha + TAU * f64::from(turns));
-                assert!((line.rho() - 1.5).abs() < 1e-12 && (line.alpha() - 0.7).abs() < 1e-12, "{line:?}");
+                assert_abs_diff_eq!(line.rho(), 1.5, epsilon = 1e-12);
+                assert_abs_diff_eq!(line.alpha(), 0.7, epsilon = 1e-12);
             }
         }
         assert_eq!(HessianLine::new(1.0, -PI).alpha(), PI);

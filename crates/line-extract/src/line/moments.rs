@@ -94,6 +94,7 @@ impl Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn two_parts_make_the_whole() {
@@ -102,9 +103,9 @@ mod tests {
         let whole = Moments::new(&points, weight);
         let parts = Moments::new(&points[..8], weight).with(&Moments::new(&points[8..], |k| weight(k + 8)));
         assert_eq!(whole.n_points, parts.n_points);
-        assert!((whole.mean - parts.mean).norm() < 1e-12);
+        assert_abs_diff_eq!(whole.mean, parts.mean, epsilon = 1e-12);
         for (a, b) in whole.spread.iter().zip(parts.spread) {
-            assert!((a - b).abs() < 1e-9 * a.abs());
+            assert_abs_diff_eq!(*a, b, epsilon = 1e-9 * a.abs());
         }
     }
 }

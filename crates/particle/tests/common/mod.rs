@@ -1,6 +1,8 @@
 //! Averages over independent runs, and how far off they may be.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+use approx::abs_diff_eq;
+
 /// Results of independent runs.
 pub(crate) struct Runs<'a>(pub(crate) &'a [f64]);
 
@@ -8,7 +10,7 @@ impl Runs<'_> {
     /// Panics when the average is further from `exact` than five standard errors (once in a million, for 200 runs) and a known bias.
     pub(crate) fn agree_with(&self, exact: f64, bias: f64) {
         let (mean, error) = (mean(self.0), standard_error(self.0));
-        assert!((mean - exact).abs() <= 5.0 * error + bias, "{mean} ± {error}, exact {exact}");
+        assert!(abs_diff_eq!(mean, exact, epsilon = 5.0 * error + bias), "{mean} ± {error}, exact {exact}");
     }
 }
 

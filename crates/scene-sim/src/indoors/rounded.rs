@@ -28,13 +28,14 @@ pub(super) fn rounded(points: &[Vector2<f64>], radius: f64) -> Result<Route, Sim
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn it_ends_where_the_last_point_is() {
         let points = [(0.0, 0.0), (10.0, 0.0), (10.0, 5.0), (2.0, 5.0)].map(|(x, y)| Vector2::new(x, y));
         let route = rounded(&points, 0.8).unwrap();
         let end = route.at(route.length_m());
-        assert!((end.translation - points[3]).norm() < 1e-9);
-        assert!((route.length_m() - (23.0 - 2.0 * (2.0 - FRAC_PI_2) * 0.8)).abs() < 1e-9);
+        assert_abs_diff_eq!(end.translation, points[3], epsilon = 1e-9);
+        assert_abs_diff_eq!(route.length_m(), 23.0 - 2.0 * (2.0 - FRAC_PI_2) * 0.8, epsilon = 1e-9);
     }
 }

@@ -1,14 +1,12 @@
 //! Routes of robots: connected straight lines and arcs, and planners for them.
 
 mod circle;
-mod lawn_mower;
 mod params;
 mod pieces;
 mod rounded_rectangle;
 mod waypoints;
 
 pub use circle::CircleRoute;
-pub use lawn_mower::LawnMowerRoute;
 pub use params::RouteParams;
 pub use pieces::{Route, RoutePiece};
 pub use rounded_rectangle::RoundedRectangleRoute;

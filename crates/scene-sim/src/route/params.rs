@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use super::{CircleRoute, LawnMowerRoute, RandomWaypointRoute, RoundedRectangleRoute, Route};
+use super::{CircleRoute, RandomWaypointRoute, RoundedRectangleRoute, Route};
 use crate::SimulationError;
 
 /// Parameters of a route.
@@ -19,8 +19,6 @@ pub enum RouteParams {
     Circle(CircleRoute),
     /// Around a rectangle.
     RoundedRectangle(RoundedRectangleRoute),
-    /// There and back in rows.
-    LawnMower(LawnMowerRoute),
     /// From one random point to the next.
     Waypoints(RandomWaypointRoute),
 }
@@ -34,7 +32,6 @@ impl RouteParams {
         match self {
             Self::Circle(circle) => circle.route(),
             Self::RoundedRectangle(rectangle) => rectangle.route(),
-            Self::LawnMower(rows) => rows.route(),
             Self::Waypoints(waypoints) => waypoints.route(rng),
         }
     }

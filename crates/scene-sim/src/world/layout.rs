@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_sensor_log::TrueLandmark;
 
-use super::{CorridorLoop, Office, OfficeFloor, RoadsideLandmarks, UniformLandmarkField, Wall};
+use super::{CorridorLoop, OfficeFloor, RoadsideLandmarks, UniformLandmarkField, Wall};
 use crate::SimulationError;
 use crate::route::Route;
 
@@ -34,8 +34,6 @@ pub enum WorldLayout {
     UniformField(UniformLandmarkField),
     /// A corridor around a block.
     CorridorLoop(CorridorLoop),
-    /// Rooms in rows and columns, with doors.
-    Office(Office),
     /// A corridor around a block, with rooms, doors, pillars and furniture: walls only.
     OfficeFloor(OfficeFloor),
     /// Rocks along the robot's route.
@@ -51,7 +49,6 @@ impl WorldLayout {
         match self {
             Self::UniformField(field) => field.plan(rng),
             Self::CorridorLoop(corridor) => corridor.plan(rng),
-            Self::Office(office) => office.plan(rng),
             Self::OfficeFloor(floor) => floor.plan(rng),
             Self::Roadside(rocks) => rocks.plan(route, rng),
         }

@@ -3,7 +3,6 @@
 mod corridor;
 mod field;
 mod layout;
-mod office;
 mod office_floor;
 mod planar;
 mod roadside;
@@ -12,7 +11,6 @@ mod wall;
 pub use corridor::CorridorLoop;
 pub use field::UniformLandmarkField;
 pub use layout::{FloorPlan, WorldLayout};
-pub use office::Office;
 pub use office_floor::OfficeFloor;
 pub use planar::{OtherRobot, PlanarWorld, SensorWorld};
 pub use roadside::RoadsideLandmarks;

@@ -1,5 +1,6 @@
 //! What lens and electronics do, on a blank wall.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use wayfix_scene_sim::league::{CameraParams, ChromaSubsampling, ExposureMode, LinearRgb};
 
 use crate::support::{Blank, channel, even_light, field_in, honest, looking, of_blank, take};
@@ -11,7 +12,10 @@ const ROUNDING: f64 = 0.5 + 255.0 / 4096.0;
 fn an_honest_camera_gives_back_what_it_sees() {
     let picture = of_blank(honest(), LinearRgb::new(0.2, 0.5, 0.8));
     for (pixel, wanted) in picture.rgb.iter().zip([0.2, 0.5, 0.8].into_iter().cycle()) {
-        assert!((f64::from(*pixel) - 255.0 * wanted).abs() <= ROUNDING + 1e-9, "{pixel} for {wanted}");
+        assert!(
+            abs_diff_eq!(f64::from(*pixel), 255.0 * wanted, epsilon = ROUNDING + 1e-9),
+            "{pixel} for {wanted}"
+        );
     }
 }
 
@@ -23,8 +27,8 @@ fn vignetting_darkens_corners_and_makes_them_bluish() {
         let (corner, middle) = (channel(&picture, 0, 0, k), channel(&picture, 104, 80, k));
         // The outermost pixel's centre is at 0.992 of the squared half diagonal.
         let wanted = 255.0 * 0.8 * (1.0 - 0.992 * lost);
-        assert!((corner - wanted).abs() < ROUNDING + 0.2, "{corner}, wanted {wanted}");
-        assert!((middle - 204.0).abs() < ROUNDING + 0.1, "{middle}");
+        assert_abs_diff_eq!(corner, wanted, epsilon = ROUNDING + 0.2);
+        assert_abs_diff_eq!(middle, 204.0, epsilon = ROUNDING + 0.1);
     }
 }
 
@@ -32,19 +36,19 @@ fn vignetting_darkens_corners_and_makes_them_bluish() {
 fn too_much_light_saturates() {
     let picture = of_blank(CameraParams { gain: 3.0, ..honest() }, LinearRgb::new(0.9, 0.5, 0.1));
     assert_eq!(picture.rgb[..2], [255, 255]);
-    assert!((f64::from(picture.rgb[2]) - 76.5).abs() <= ROUNDING, "{}", picture.rgb[2]);
+    assert_abs_diff_eq!(f64::from(picture.rgb[2]), 76.5, epsilon = ROUNDING);
 }
 
 #[test]
 fn gamma_crosstalk_and_stray_light_are_as_asked_for() {
     let bent = of_blank(CameraParams { gamma: 0.5, ..honest() }, LinearRgb::repeat(0.25));
-    assert!((f64::from(bent.rgb[0]) - 127.5).abs() <= 1.0, "{}", bent.rgb[0]);
+    assert_abs_diff_eq!(f64::from(bent.rgb[0]), 127.5, epsilon = 1.0);
     let mixed = of_blank(CameraParams { crosstalk: 0.1, ..honest() }, LinearRgb::new(1.0, 0.0, 0.0));
     for (got, wanted) in mixed.rgb.iter().zip([204.0, 25.5, 25.5]) {
-        assert!((f64::from(*got) - wanted).abs() <= ROUNDING, "{got}, wanted {wanted}");
+        assert_abs_diff_eq!(f64::from(*got), wanted, epsilon = ROUNDING);
     }
     let hazy = of_blank(CameraParams { stray_light: 0.1, ..honest() }, LinearRgb::repeat(0.5));
-    assert!((f64::from(hazy.rgb[0]) - 255.0 * 0.55).abs() <= ROUNDING, "{}", hazy.rgb[0]);
+    assert_abs_diff_eq!(f64::from(hazy.rgb[0]), 255.0 * 0.55, epsilon = ROUNDING);
 }
 
 /// U of BT.601, as far as bytes say.

@@ -1,5 +1,6 @@
 //! A whole drive: reproducible, one sin at a time, kidnap_frames that nobody notices.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::league::{
     CameraParams, LampSetting, LeagueDrive, LeagueFrame, LeagueParams, LeagueVenue,
@@ -79,11 +80,7 @@ fn the_white_balance_drifts_as_asked_for() {
         );
         let logs: Vec<f64> = drifting.iter().zip(steady).map(|(d, s)| (d / s).ln()).collect();
         // 60 nearly independent draws; rounding to levels of about 30 is worth some thousandths.
-        assert!(
-            (deviation(&logs) - sigma).abs() < 4.0 * sigma / 120.0_f64.sqrt() + 0.005,
-            "{}",
-            deviation(&logs)
-        );
+        assert_abs_diff_eq!(deviation(&logs), sigma, epsilon = 4.0 * sigma / 120.0_f64.sqrt() + 0.005);
     }
 }
 
@@ -118,7 +115,10 @@ fn odometry_comes_between_the_frames() {
     let start = Pose2::new(0.3, -0.2, 1.0);
     let frames = frames(&LeagueParams { n_frames: 5, start: Some(start), ..LeagueParams::default() }, 1);
     assert_eq!(frames[0].odometry, None);
-    assert!((frames[0].pose.translation - start.translation).norm() < 1e-12, "it rests at first");
+    assert!(
+        abs_diff_eq!(frames[0].pose.translation, start.translation, epsilon = 1e-12),
+        "it rests at first"
+    );
     for pair in frames.windows(2) {
         let when = pair[1].odometry.expect("after the first").0;
         assert!(pair[0].milliseconds < when && when < pair[1].milliseconds);

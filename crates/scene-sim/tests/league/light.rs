@@ -1,5 +1,6 @@
 //! The light: colour temperature, fall-off, shading by the angle, and what a venue makes of it.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_scene_sim::league::{
     Lamp, LampLight, LampSetting, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body,
@@ -17,7 +18,11 @@ fn a_black_body_has_the_tabulated_color() {
         let xyz =
             [sum([0.4124, 0.3576, 0.1805]), sum([0.2126, 0.7152, 0.0722]), sum([0.0193, 0.1192, 0.9505])];
         let total: f64 = xyz.iter().sum();
-        assert!((xyz[0] / total - x).abs() < 2e-3 && (xyz[1] / total - y).abs() < 2e-3, "{kelvin} K: {rgb}");
+        assert!(
+            abs_diff_eq!(xyz[0] / total, x, epsilon = 2e-3)
+                && abs_diff_eq!(xyz[1] / total, y, epsilon = 2e-3),
+            "{kelvin} K: {rgb}"
+        );
     }
 }
 
@@ -35,7 +40,7 @@ fn light_falls_off_over_the_carpet_as_in_the_picture() {
     assert!(falls[0] > 1.3 * falls[1] && falls[1] > 1.3 * falls[2], "{falls:?}");
     for (x, got) in [-1.0, 0.0, 1.0].into_iter().zip(falls) {
         let wanted = 255.0 * 0.5 * light.irradiance(&Vector3::new(x, 0.7, 0.0), &Vector3::z()).x;
-        assert!((got - wanted).abs() < 1.0, "{got}, wanted {wanted}"); // half a level, and half a pixel to the side
+        assert_abs_diff_eq!(got, wanted, epsilon = 1.0); // half a level, and half a pixel to the side
     }
 }
 
@@ -47,7 +52,7 @@ fn surfaces_are_shaded_by_the_angle_to_the_lamp() {
     let towards = light.irradiance(&at, &-Vector3::x());
     assert!(towards.x > 0.0 && light.irradiance(&at, &Vector3::x()) == LinearRgb::zeros());
     // Direction to the lamp is (−1, 0, 2)/√5: upright faces get half of what the ground gets.
-    assert!((towards.x / light.irradiance(&at, &Vector3::z()).x - 0.5).abs() < 1e-15);
+    assert_abs_diff_eq!(towards.x / light.irradiance(&at, &Vector3::z()).x, 0.5, epsilon = 1e-15);
 }
 
 #[test]

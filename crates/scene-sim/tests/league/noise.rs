@@ -1,5 +1,6 @@
 //! Noise of the chip.
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use wayfix_scene_sim::league::{CameraParams, LinearRgb};
 
 use crate::support::{deviation, honest, mean, of_blank};
@@ -21,7 +22,7 @@ fn shot_and_read_noise_add_up() {
         assert!(off < 4.0 * sigma / (2.0 * n).sqrt() + 0.02, "σ {} wanted {sigma}", deviation(&green));
         // Half a step of the response is lost.
         assert!(
-            (mean(&green) - 255.0 * signal).abs() < 4.0 * sigma / n.sqrt() + 0.05,
+            abs_diff_eq!(mean(&green), 255.0 * signal, epsilon = 4.0 * sigma / n.sqrt() + 0.05),
             "mean {}",
             mean(&green)
         );
@@ -36,9 +37,9 @@ fn fast_normal_deviate_has_unit_variance_and_normal_tails() {
     let draws: Vec<f64> = (0..n).map(|_| wayfix_scene_sim::random::deviate::quick_normal(&mut rng)).collect();
     let root = f64::from(n).sqrt();
     assert!(mean(&draws).abs() < 4.0 / root, "{}", mean(&draws));
-    assert!((deviation(&draws) - 1.0).abs() < 4.0 / (2.0_f64.sqrt() * root), "{}", deviation(&draws));
+    assert_abs_diff_eq!(deviation(&draws), 1.0, epsilon = 4.0 / (2.0_f64.sqrt() * root));
     // Four uniform numbers: kurtosis 3 − 6/(5·4) = 2.7. The standard error of a fourth moment is at most √(E x⁸/n) < √(70/n).
     let fourth = mean(&draws.iter().map(|x| x.powi(4)).collect::<Vec<_>>());
-    assert!((fourth - 2.7).abs() < 4.0 * 70.0_f64.sqrt() / root, "{fourth}");
+    assert_abs_diff_eq!(fourth, 2.7, epsilon = 4.0 * 70.0_f64.sqrt() / root);
     assert!(draws.iter().all(|x| x.abs() <= 12.0_f64.sqrt()));
 }

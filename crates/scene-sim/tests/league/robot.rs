@@ -1,5 +1,6 @@
 //! The robot: what it reports against what is true.
 
+use approx::abs_diff_eq;
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_scene_sim::league::{
@@ -96,7 +97,7 @@ fn odometry_is_off_by_a_scale_per_axis() {
     let ([x, y, _], [_, _, turn]) = (odometry(silent, 1.0), odometry(silent, 0.0));
     for ((truth, said), scale) in [(x, 0.8), (y, 0.8), (turn, 1.1)] {
         assert!(truth > 1.0, "it moves: {truth}");
-        assert!((truth / said - scale).abs() < 1e-9, "{truth} of {said}");
+        assert!(abs_diff_eq!(truth / said, scale, epsilon = 1e-9), "{truth} of {said}");
     }
 }
 

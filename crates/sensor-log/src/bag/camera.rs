@@ -73,6 +73,7 @@ fn image_base(topic: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::Vector3;
 
     use super::*;
@@ -105,8 +106,8 @@ mod tests {
         assert_eq!((info.width, info.height), (200, 160));
         // The corner at column 300 of the sensor is the corner at column (300 - 100) / 2 of the image.
         let whole = pinhole(&message(), false).unwrap();
-        assert!(((100.0 - info.cx) / info.fx - (300.0 - whole.cx) / whole.fx).abs() < 1e-15);
-        assert!(((80.0 - info.cy) / info.fy - (200.0 - whole.cy) / whole.fy).abs() < 1e-15);
+        assert_abs_diff_eq!((100.0 - info.cx) / info.fx, (300.0 - whole.cx) / whole.fx, epsilon = 1e-15);
+        assert_abs_diff_eq!((80.0 - info.cy) / info.fy, (200.0 - whole.cy) / whole.fy, epsilon = 1e-15);
     }
 
     #[test]

@@ -73,6 +73,7 @@ pub(super) fn planar(pose: &Pose) -> Result<Pose2<f64>, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn at(nanoseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(nanoseconds)
@@ -87,7 +88,8 @@ mod tests {
         for (k, pose) in poses.iter().enumerate().skip(1) {
             path = path.compose(&odometer.increment(at(k as u64 * 100_000_000), *pose).unwrap().unwrap());
         }
-        assert!((path.x() - 1.0).abs() < 1e-15 && (path.heading() + 3.0).abs() < 1e-15, "{path:?}");
+        assert_abs_diff_eq!(path.x(), 1.0, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.heading(), -3.0, epsilon = 1e-15);
     }
 
     #[test]

@@ -64,6 +64,7 @@ fn limits(message: &ros::LaserScan<'_>) -> (f32, f64) {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
     use super::*;
@@ -116,7 +117,7 @@ mod tests {
         let seen = mount.pose.transform(&Vector2::new(range * bearing.cos(), range * bearing.sin()));
         let (sin, cos) = (-0.5_f64).sin_cos();
         let expected = rotation * Vector3::new(2.0 * cos, 2.0 * sin, 0.0) + laser.translation;
-        assert!((seen - expected.xy()).norm() < 1e-12, "{seen} {expected}");
+        assert!(abs_diff_eq!(seen, expected.xy(), epsilon = 1e-12), "{seen} {expected}");
     }
 
     #[test]

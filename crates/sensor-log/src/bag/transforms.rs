@@ -68,6 +68,7 @@ fn bare(frame: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::{UnitQuaternion, Vector3};
 
     use super::*;
@@ -91,7 +92,7 @@ mod tests {
     #[test]
     fn a_camera_on_a_mast_is_placed_on_the_ground_below_the_robot() {
         let camera = robot().in_body("/camera", Some("base_link")).unwrap();
-        assert!((camera.translation - Vector3::new(0.75, 0.0, 0.6)).norm() < 1e-15, "{camera:?}");
+        assert_abs_diff_eq!(camera.translation, Vector3::new(0.75, 0.0, 0.6), epsilon = 1e-15);
     }
 
     #[test]

@@ -23,7 +23,7 @@ impl EncodedImage {
     ///
     /// # Errors
     /// Returns an error if the pixels do not fill the image or there are none.
-    pub fn pnm_gray(width: u32, height: u32, gray: &[u8]) -> Result<Self, ImageError> {
+    pub(crate) fn pnm_gray(width: u32, height: u32, gray: &[u8]) -> Result<Self, ImageError> {
         super::encode::check(width, height, 1, gray)?;
         Ok(pnm("P5", width, height, gray))
     }

@@ -44,6 +44,7 @@ pub(crate) fn warn_of_assumed_field_of_view(n_beams: usize, report: &mut ReadRep
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn the_beams_cover_the_half_circle() {
@@ -52,7 +53,7 @@ mod tests {
         {
             let scan = half_circle(vec![1.0; n_beams]).unwrap();
             assert_eq!(scan.bearing(0), -std::f64::consts::FRAC_PI_2);
-            assert!((scan.bearing(n_beams - 1).to_degrees() - last_degrees).abs() < 1e-9);
+            assert_abs_diff_eq!(scan.bearing(n_beams - 1).to_degrees(), last_degrees, epsilon = 1e-9);
         }
         assert_eq!(half_circle(vec![1.0]).unwrap_err().kind, RowProblemKind::Inconsistent);
         assert_eq!(half_circle(Vec::new()).unwrap_err().kind, RowProblemKind::Inconsistent);

@@ -4,6 +4,7 @@
 
 use crate::common::bag::{Bag, at, pose, quaternion, transforms};
 use crate::common::cdr::Encoder;
+use approx::assert_abs_diff_eq;
 use wayfix_estimation_traits::{Pose2, nalgebra::Matrix3};
 use wayfix_sensor_log::{MeasuredQuantity, PoseMeasurement, Record, RecordData, RowProblemKind};
 
@@ -81,7 +82,7 @@ fn an_imu_tells_the_heading_of_the_robot_it_is_mounted_on() {
     let measured = measured(&records);
     let [first, second] = measured[..] else { panic!("{measured:?}") };
     let MeasuredQuantity::Heading(heading) = first.quantity else { panic!("{first:?}") };
-    assert!((heading - 0.5).abs() < 1e-12, "{heading}");
+    assert_abs_diff_eq!(heading, 0.5, epsilon = 1e-12);
     assert_eq!((first.frame.as_str(), first.covariance.unwrap().m33), ("enu", 0.04));
     assert_eq!(second.covariance, None);
     assert_eq!(report.problems.get(&RowProblemKind::Inconsistent), Some(&1), "it tells no orientation");

@@ -1,5 +1,6 @@
 //! ROS 2 bags from beginning to end: one that the Python package rosbags wrote, and some of our own making.
 
+use approx::assert_abs_diff_eq;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fs;
@@ -63,7 +64,11 @@ fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
                 assert!(mount.inverse().compose(&Pose2::new(0.3, 0.0, 0.5)).log().norm() < 1e-12);
             }
             RecordData::CameraMount(mount) => {
-                assert!((mount.translation - nalgebra::Vector3::new(0.1, 0.0, 0.6)).norm() < 1e-12);
+                assert_abs_diff_eq!(
+                    mount.translation,
+                    nalgebra::Vector3::new(0.1, 0.0, 0.6),
+                    epsilon = 1e-12
+                );
                 assert!(mount.rotation.angle() < 1e-12);
             }
             RecordData::CameraInfo(info) => {

@@ -206,6 +206,7 @@ fn stride(dimension: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::{DMatrix, Matrix2x3, Matrix3};
 
     use super::*;
@@ -232,7 +233,7 @@ mod tests {
         let mut dense = DMatrix::identity(n, n);
         dense.columns_mut(0, 3).gemm(1.0, &a, &b, 1.0);
         let expected = &dense * before * dense.transpose();
-        assert!((covariance.matrix() - &expected).amax() < 1e-12 * expected.amax()); // roundings of a dozen products, and what is given back
+        assert_abs_diff_eq!(covariance.matrix().into_owned(), expected, epsilon = 1e-12 * expected.amax()); // roundings of a dozen products, and what is given back
         assert_eq!(covariance.matrix(), covariance.matrix().transpose());
     }
 }

@@ -44,7 +44,7 @@ where
     /// The innovation, if its NIS is at most `limit`. The noise is that at the expected measurement ([`LandmarkModel::noise_at_expected`]).
     ///
     /// A single coordinate rejects most landmarks at low cost, because $`ν_i^2 / S_{ii} ≤ ν^T S^{-1} ν`$.
-    pub fn innovation_within(
+    pub(crate) fn innovation_within(
         &self,
         limit: f64,
         measurement: &M::Measurement,
@@ -78,7 +78,7 @@ where
     }
 
     /// $`H_a P H_b^T`$: cross-covariance of the predictions of two landmarks, without the noise of the sensor.
-    pub fn predicted_cross_covariance(
+    pub(crate) fn predicted_cross_covariance(
         &self,
         a: &PredictedMeasurement<M>,
         b: &PredictedMeasurement<M>,

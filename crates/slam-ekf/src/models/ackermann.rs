@@ -1,7 +1,4 @@
-use nalgebra::Matrix3;
-use wayfix_estimation_traits::{MotionModel, Pose2};
-
-use super::{VelocityControl, VelocityMotion};
+use super::VelocityControl;
 
 /// A car with an encoder at one rear wheel; its reference point is the middle of the rear axle.
 ///
@@ -43,52 +40,5 @@ impl AckermannVehicle {
         let tangent = steering.tan();
         let linear = wheel_speed / (1.0 - tangent * self.wheel_offset / self.wheel_base);
         VelocityControl { linear, angular: linear * tangent / self.wheel_base, duration }
-    }
-}
-
-/// Speed of the encoder's wheel, m/s, and steering angle, rad, constant for a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AckermannControl {
-    /// Of the wheel with the encoder, m/s.
-    pub wheel_speed: f64,
-    /// Of the front wheels, rad, left positive.
-    pub steering: f64,
-    /// Duration, s.
-    pub duration: f64,
-}
-
-/// The motion of an [`AckermannVehicle`]: its velocity, with the noise of a [`VelocityMotion`].
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct AckermannMotion {
-    /// Dimensions of the car.
-    pub vehicle: AckermannVehicle,
-    /// Noise of the motion.
-    pub velocity: VelocityMotion,
-}
-
-impl AckermannMotion {
-    fn velocity_of(&self, control: &AckermannControl) -> VelocityControl {
-        self.vehicle.velocity(control.wheel_speed, control.steering, control.duration)
-    }
-}
-
-impl MotionModel for AckermannMotion {
-    type State = Pose2<f64>;
-    type Control = AckermannControl;
-
-    fn propagate(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Pose2<f64> {
-        self.velocity.propagate(pose, &self.velocity_of(control))
-    }
-    fn jacobian(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Matrix3<f64> {
-        self.velocity.jacobian(pose, &self.velocity_of(control))
-    }
-    fn noise(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Matrix3<f64> {
-        self.velocity.noise(pose, &self.velocity_of(control))
     }
 }

@@ -18,7 +18,7 @@ mod velocity;
 #[cfg(feature = "lines")]
 mod wall;
 
-pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
+pub use ackermann::AckermannVehicle;
 pub use correlated_noise::CorrelatedNoise;
 pub use drifting::{
     HeadingDriftSensor, MotionWithHeadingDrift, PoseWithHeadingDrift, SensorWithHeadingDrift,

@@ -68,6 +68,7 @@ impl MotionStatistics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn unknown_motion_has_the_rms_speed() {
@@ -76,8 +77,8 @@ mod tests {
         statistics.add(&Pose2::new(0.5, 0.0, 0.1), 1.0);
         statistics.add(&Pose2::new(0.0, 0.0, 0.0), 1.0);
         let covariance = statistics.unknown_motion(2.0);
-        assert!((covariance.m11 - 0.5 * 0.25 * 4.0).abs() < 1e-12);
-        assert!((covariance.m33 - 0.5 * 0.01 * 4.0).abs() < 1e-12);
+        assert_abs_diff_eq!(covariance.m11, 0.5 * 0.25 * 4.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(covariance.m33, 0.5 * 0.01 * 4.0, epsilon = 1e-12);
     }
 
     #[test]

@@ -39,6 +39,7 @@ where
 #[cfg(test)]
 mod tests {
     use crate::{VelocityControl, VelocityMotion};
+    use approx::assert_abs_diff_eq;
     use wayfix_estimation_traits::laws;
 
     use super::*;
@@ -64,12 +65,12 @@ mod tests {
         let pose = Pose2::new(1.0, 2.0, 0.5);
         let in_pieces = SequentialMotion(motion);
         let (one, many) = (motion.propagate(&pose, &whole), in_pieces.propagate(&pose, &pieces));
-        assert!((one.translation - many.translation).norm() < 1e-12);
-        assert!((one.heading() - many.heading()).abs() < 1e-12);
+        assert_abs_diff_eq!(one.translation, many.translation, epsilon = 1e-12);
+        assert_abs_diff_eq!(one.heading(), many.heading(), epsilon = 1e-12);
         let jacobians = motion.jacobian(&pose, &whole) - in_pieces.jacobian(&pose, &pieces);
         assert!(jacobians.amax() < 1e-12);
         // Variances along the path and in heading are a random walk, hence the same however time is cut.
         let (one, many) = (motion.noise(&pose, &whole), in_pieces.noise(&pose, &pieces));
-        assert!((one.m33 - many.m33).abs() < 1e-12);
+        assert_abs_diff_eq!(one.m33, many.m33, epsilon = 1e-12);
     }
 }

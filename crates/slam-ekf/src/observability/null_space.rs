@@ -36,13 +36,14 @@ pub(super) fn readable(mut basis: DMatrix<f64>) -> Vec<DVector<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     #[test]
     fn finds_the_direction_that_a_known_matrix_lacks() {
         let matrix = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.0]) * 7.0; // [Andrade-Cetto 2005, Eq. 17]
         let null = null_space(&matrix, &matrix.diagonal(), 1e-9);
         assert_eq!(null.ncols(), 1);
-        assert!((null[0] - null[1]).abs() < 1e-12, "(1, 1), Eq. 18");
+        assert!(abs_diff_eq!(null[0], null[1], epsilon = 1e-12), "(1, 1), Eq. 18");
     }
 
     #[test]

@@ -11,11 +11,11 @@ pub struct Calibration {
 
 impl Calibration {
     /// The range that is measured at a distance, without noise.
-    pub fn range_of(&self, distance: f64) -> f64 {
+    pub(crate) fn range_of(&self, distance: f64) -> f64 {
         self.log_scale.exp() * distance + self.bias
     }
     /// The distance at which a range is measured.
-    pub fn distance_of(&self, range: f64) -> f64 {
+    pub(crate) fn distance_of(&self, range: f64) -> f64 {
         (range - self.bias) / self.log_scale.exp()
     }
 }

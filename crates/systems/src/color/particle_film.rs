@@ -183,6 +183,7 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn the_parts_of_a_run_are_equal_and_all_of_it() {
@@ -201,7 +202,8 @@ mod tests {
         let at = sheet.pixels.iter().position(|pixel| *pixel == TRUTH).expect("drawn");
         let (column, row) = ((at % WIDTH) as f64, (at / WIDTH) as f64);
         let margin = MARGIN * sheet.pixels_per_meter;
-        assert!((column - margin).abs() < 3.0 && (row - margin).abs() < 3.0, "{column} {row}");
+        assert_abs_diff_eq!(column, margin, epsilon = 3.0);
+        assert_abs_diff_eq!(row, margin, epsilon = 3.0);
         assert!(!sheet.pixels.contains(&ESTIMATE));
     }
 }

@@ -145,7 +145,7 @@ impl ColorSystem {
     ///
     /// # Errors
     /// Returns an error if a colour's density has no peak.
-    pub fn classified(&mut self, image: &YuvImage) -> Result<Vec<u8>, String> {
+    pub(crate) fn classified(&mut self, image: &YuvImage) -> Result<Vec<u8>, String> {
         let colors = self.colors();
         let table = match self.table.take() {
             Some(mut table) => {
@@ -235,7 +235,7 @@ impl ColorSystem {
 
     fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<ClassificationCounts> {
         let (_, labels) = self.labels.take().filter(|(labelled, _)| *labelled == stamp)?;
-        let labels = labels.decode_gray().ok()?;
+        let labels = labels.decode_labels().ok()?;
         let classifier = PixelClassifier::new(self.colors()).ok()?;
         tally(image, &labels, &classifier, self.map.colors().len())
     }

@@ -114,6 +114,7 @@ fn nanoseconds(seconds: f64) -> i128 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn at(milliseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
@@ -135,8 +136,8 @@ mod tests {
     fn a_command_holds_until_the_next() {
         let pieces = turn_of_100_ms(RobotTimingParams::default());
         assert_eq!(pieces.len(), 3);
-        assert!((turned(&pieces) - 0.05).abs() < 1e-12);
-        assert!((pieces.iter().map(|piece| piece.duration).sum::<f64>() - 0.5).abs() < 1e-12);
+        assert_abs_diff_eq!(turned(&pieces), 0.05, epsilon = 1e-12);
+        assert_abs_diff_eq!(pieces.iter().map(|piece| piece.duration).sum::<f64>(), 0.5, epsilon = 1e-12);
     }
 
     #[test]
@@ -147,10 +148,10 @@ mod tests {
             ..RobotTimingParams::default()
         };
         let pieces = turn_of_100_ms(robot);
-        assert!((turned(&pieces) - 0.5 * 0.06).abs() < 1e-12); // 40 ms of the 100 are lost
+        assert_abs_diff_eq!(turned(&pieces), 0.5 * 0.06, epsilon = 1e-12); // 40 ms of the 100 are lost
         let before: f64 =
             pieces.iter().take_while(|piece| piece.angular == 0.0).map(|piece| piece.duration).sum();
-        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + time loss
+        assert_abs_diff_eq!(before, 0.29, epsilon = 1e-12); // 100 ms + delay + time loss
         assert_eq!(pieces[0].linear, 0.0); // stands until the first command acts
     }
 
@@ -159,10 +160,10 @@ mod tests {
         let mut commands = Commands::new(&RobotTimingParams::default());
         commands.push(at(0), Velocity { linear: 1.0, angular: 0.0 });
         let driven = |pieces: &[VelocityControl]| pieces.iter().map(|p| p.linear * p.duration).sum::<f64>();
-        assert!((driven(&commands.between(at(0), at(5000))) - 1.0).abs() < 1e-12);
-        assert!((commands.unknown_seconds(at(0), at(5000)) - 4.0).abs() < 1e-12);
+        assert_abs_diff_eq!(driven(&commands.between(at(0), at(5000))), 1.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(commands.unknown_seconds(at(0), at(5000)), 4.0, epsilon = 1e-12);
         commands.push(at(6000), Velocity { linear: 1.0, angular: 0.0 });
-        assert!((commands.unknown_seconds(at(5000), at(6500)) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(commands.unknown_seconds(at(5000), at(6500)), 1.0, epsilon = 1e-12);
         assert_eq!(commands.unknown_seconds(at(6000), at(7000)), 0.0);
     }
 

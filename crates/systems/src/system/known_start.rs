@@ -72,6 +72,7 @@ fn by_velocities(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use wayfix_sensor_log::Velocity;
 
     use super::*;
@@ -94,8 +95,8 @@ mod tests {
         let records = [&odometry[..], &[truth(1500, 7.0), truth(1600, 7.2)]].concat();
         let track = ReferencePath::from_records(&records);
         let start = TrueStartPose::at(at(500), &track, &records).unwrap();
-        assert!((start.pose.x() - (7.0 - 0.5 - 1.0)).abs() < 1e-12, "{start:?}");
-        assert!((start.seconds_late - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(start.pose.x(), 7.0 - 0.5 - 1.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(start.seconds_late, 1.0, epsilon = 1e-12);
         assert_eq!(TrueStartPose::at(at(1500), &track, &records).unwrap().seconds_late, 0.0);
         assert_eq!(TrueStartPose::at(at(500), &ReferencePath::default(), &records), None);
     }
@@ -105,6 +106,6 @@ mod tests {
         let data = RecordData::Velocity(Velocity { linear: 2.0, angular: 0.0 });
         let records = [Record { stamp: at(0), data }, truth(1500, 7.0), truth(1600, 7.2)];
         let start = TrueStartPose::at(at(500), &ReferencePath::from_records(&records), &records).unwrap();
-        assert!((start.pose.x() - 5.0).abs() < 1e-12, "{start:?}");
+        assert_abs_diff_eq!(start.pose.x(), 5.0, epsilon = 1e-12);
     }
 }

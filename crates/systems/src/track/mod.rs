@@ -5,14 +5,14 @@
 //! number of frames.
 //!
 //! ```
-//! use wayfix_systems::track::{BoxScore, TrueBoxes};
+//! use wayfix_systems::track::{BoxScore, TargetTruth, TrueBoxes};
 //! let truth = TrueBoxes::parse("10,10,20,20\n11,10,20,20\n0,0,0,0\n")?;
 //! let mut score = BoxScore::default();
 //! for (index, estimate) in [(0, truth.at(0).target()), (1, None)] {
 //!     score.add(estimate.as_ref(), &truth.at(index).target().expect("in sight"));
 //! }
 //! assert_eq!(score.iou_mean(), Some(0.5)); // the second frame was lost
-//! assert!(truth.at(2).is_absent() && truth.at(3).is_unknown());
+//! assert_eq!((truth.at(2), truth.at(3)), (TargetTruth::Absent, TargetTruth::Unknown));
 //! # Ok::<(), wayfix_systems::track::TrackSystemError>(())
 //! ```
 

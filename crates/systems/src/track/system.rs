@@ -114,7 +114,7 @@ impl TrackSystem {
     }
 
     /// Error rates of the lost status so far.
-    pub fn status_score(&self) -> &LostStatusScore {
+    pub(crate) fn status_score(&self) -> &LostStatusScore {
         &self.status_score
     }
 

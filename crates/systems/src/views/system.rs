@@ -188,7 +188,7 @@ impl ViewTrial {
     }
 
     /// Whether the robot reports the goal and is not there.
-    pub fn is_false_arrival(&self) -> bool {
+    pub(crate) fn is_false_arrival(&self) -> bool {
         self.report.arrival == NavigationOutcome::Reached && self.end != self.goal
     }
 }

@@ -130,6 +130,7 @@ impl OdometryBetweenScans {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     fn at(milliseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
@@ -175,8 +176,11 @@ mod tests {
         odometry.cut(&Pose2::new(0.5, 0.0, 0.0), at(1000), &[]);
         let motion = odometry.unknown_until(at(3000));
         assert_eq!((motion.increment, motion.unknown_seconds), (Pose2::identity(), 2.0));
-        assert!((motion.error.m11 - 1.0).abs() < 1e-12, "0.5 m/s for 2 s");
+        assert!(abs_diff_eq!(motion.error.m11, 1.0, epsilon = 1e-12), "0.5 m/s for 2 s");
         let rest = odometry.cut(&Pose2::new(4.0, 0.0, 0.0), at(5000), &[]);
-        assert!((rest[0].increment.x() - 2.0).abs() < 1e-12, "what came before 3 s is used up: {rest:?}");
+        assert!(
+            abs_diff_eq!(rest[0].increment.x(), 2.0, epsilon = 1e-12),
+            "what came before 3 s is used up: {rest:?}"
+        );
     }
 }

@@ -159,6 +159,7 @@ impl MotionModel for RelativeMotion {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use nalgebra::{Matrix4, linalg::Cholesky};
 
     use super::*;
@@ -204,11 +205,16 @@ mod tests {
         let weight = drift_variance / (drift_variance + variance);
         let left = drift_variance * (1.0 - weight);
         let corrected = relative_motion.corrected_by(&found, weight * change).unwrap();
-        assert!((weight * change - mean[0]).abs() < 1e-9 && (left - posterior[(0, 0)]).abs() < 1e-9);
-        assert!((relative_motion.motion.local(&corrected.motion) - mean.fixed_rows::<3>(1)).norm() < 1e-9);
+        assert_abs_diff_eq!(weight * change, mean[0], epsilon = 1e-9);
+        assert_abs_diff_eq!(left, posterior[(0, 0)], epsilon = 1e-9);
+        assert_abs_diff_eq!(
+            relative_motion.motion.local(&corrected.motion),
+            mean.fixed_rows::<3>(1).into_owned(),
+            epsilon = 1e-9
+        );
         let total =
             corrected.covariance + corrected.drift_jacobian * left * corrected.drift_jacobian.transpose();
-        assert!((total - posterior.fixed_view::<3, 3>(1, 1)).norm() < 1e-9);
+        assert_abs_diff_eq!(total, posterior.fixed_view::<3, 3>(1, 1).into_owned(), epsilon = 1e-9);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-use super::{ColorBinImage, ColorBinSet, ColorQuantizer};
+use super::{ColorBinImage, ColorQuantizer};
 use crate::error::{check_size, checked, probability};
 use crate::{PixelMask, TrackingError};
 
@@ -107,12 +107,6 @@ impl ColorHistogram {
             own => total / own,
         };
         Ok(Self { counts: self.counts.iter().map(|count| count * factor).collect() })
-    }
-
-    /// The bins with more than `threshold` pixels; with 0 those that have a pixel.
-    pub fn bins_above(&self, threshold: f64) -> ColorBinSet {
-        let above = |bin: u16| self.counts[usize::from(bin)] > threshold;
-        ColorBinSet::from_predicate(self.counts.len(), above)
     }
 
     /// Counts pixels by their bins.

@@ -103,12 +103,12 @@ impl ColorQuantizer {
     }
 
     /// The place of a bin on each axis.
-    pub fn axes_of_bin(&self, bin: u16) -> [usize; 3] {
+    pub(crate) fn axes_of_bin(&self, bin: u16) -> [usize; 3] {
         self.axes.map(|Axis { last, stride, .. }| (u32::from(bin) / stride % (last + 1)) as usize)
     }
 
     /// The point in the middle of a bin.
-    pub fn center_of_bin(&self, bin: u16) -> [f64; 3] {
+    pub(crate) fn center_of_bin(&self, bin: u16) -> [f64; 3] {
         let axes = self.axes_of_bin(bin);
         [0, 1, 2].map(|axis| (axes[axis] as f64 + 0.5) / self.axes[axis].n)
     }

@@ -73,7 +73,7 @@ impl ColorSpace {
     }
 
     /// Whether 0 and 1 of an axis are the same, as they are for the hue.
-    pub fn is_circular(self, axis: usize) -> bool {
+    pub(crate) fn is_circular(self, axis: usize) -> bool {
         match self {
             Self::Hsi => axis == 0,
             Self::Custom(space) => space.circular_axis == Some(axis),
@@ -129,6 +129,7 @@ pub(super) fn saturation(sum: i32, least: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     fn corners() -> impl Iterator<Item = [u8; 3]> {
         (0..8_u8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|bit| 255 * bit))
@@ -142,7 +143,10 @@ mod tests {
                 let (low, high) = (values().fold(1.0, f64::min), values().fold(0.0, f64::max));
                 // The last corner of the hue before a whole turn is magenta.
                 let top = if space.is_circular(axis) { 5.0 / 6.0 } else { 1.0 };
-                assert!(low == 0.0 && (high - top).abs() < 1e-15, "{space:?} {axis}: {low} to {high}");
+                assert!(
+                    low == 0.0 && abs_diff_eq!(high, top, epsilon = 1e-15),
+                    "{space:?} {axis}: {low} to {high}"
+                );
             }
         }
     }
@@ -152,7 +156,7 @@ mod tests {
         let pure = [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
         for (k, rgb) in pure.into_iter().enumerate() {
             let [hue, saturation, _] = ColorSpace::Hsi.convert(rgb);
-            assert!((hue - k as f64 / 6.0).abs() < 1e-15);
+            assert_abs_diff_eq!(hue, k as f64 / 6.0, epsilon = 1e-15);
             assert_eq!(saturation, 1.0);
         }
         assert_eq!(ColorSpace::Hsi.convert([0; 3]), [0.0; 3]);
@@ -168,7 +172,7 @@ mod tests {
                     _ => ([color[0], color[1]], color[2]),
                 };
                 assert_eq!(neutral, [0.5; 2]);
-                assert!((bright - f64::from(value) / 255.0).abs() < 1e-15);
+                assert_abs_diff_eq!(bright, f64::from(value) / 255.0, epsilon = 1e-15);
             }
             assert_eq!(ColorSpace::NormalizedRgb.convert([value; 3]), [1.0 / 3.0; 3]);
         }

@@ -57,15 +57,16 @@ fn peak_to_sidelobe(response: &[f32], side: usize, (x, y): (usize, usize), value
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn the_top_of_a_gaussian_is_found_between_its_values() {
         for top in [-0.4, -0.1, 0.0, 0.3, 0.45] {
             let value = |x: f64| (-0.5 * (x - top).powi(2) / 0.64).exp();
-            assert!((vertex(value(-1.0), value(0.0), value(1.0)) - top).abs() < 1e-12);
+            assert_abs_diff_eq!(vertex(value(-1.0), value(0.0), value(1.0)), top, epsilon = 1e-12);
         }
         assert_eq!(vertex(0.0, 0.0, 0.0), 0.0);
-        assert!((vertex(-2.0, 2.0, 0.0) - 1.0 / 6.0).abs() < 1e-12); // the parabola 2 + x − 3 x²
+        assert_abs_diff_eq!(vertex(-2.0, 2.0, 0.0), 1.0 / 6.0, epsilon = 1e-12); // the parabola 2 + x − 3 x²
     }
 
     #[test]

@@ -145,6 +145,7 @@ impl ScaleFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     /// An image of blobs enlarged by a factor about the centre.
     fn zoomed(factor: f64) -> RgbImage {
@@ -168,7 +169,7 @@ mod tests {
             let first = filter.factor(&shown, center, size);
             let found = first * filter.factor(&shown, center, size.map(|side| side * first));
             // one step between scales
-            assert!((found / factor - 1.0).abs() < 0.03, "{factor}: {found}");
+            assert!(abs_diff_eq!(found / factor, 1.0, epsilon = 0.03), "{factor}: {found}");
         }
     }
 }

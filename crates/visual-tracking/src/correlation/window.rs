@@ -146,6 +146,7 @@ fn signed(i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn means_over_the_box_are_those_of_its_pixels() {
@@ -160,7 +161,7 @@ mod tests {
         let (columns, rows) = (range(96.0 + 12.0, width), range(96.0 - 8.0, height));
         let sum: f32 = rows.map(|y| values[y * PIXELS..][columns.clone()].iter().sum::<f32>()).sum();
         let expected = sum / (width * height) as f32;
-        assert!((means[shift_y * SIDE + shift_x] - expected).abs() < 1e-2);
+        assert_abs_diff_eq!(means[shift_y * SIDE + shift_x], expected, epsilon = 1e-2);
     }
 
     #[test]

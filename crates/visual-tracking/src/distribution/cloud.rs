@@ -41,7 +41,7 @@ impl ColorCloud {
     /// A cloud of colours with a pixel count each, not necessarily a whole number.
     /// # Errors
     /// Returns the errors of [`from_colors`](Self::from_colors), and [`TrackingError::Parameter`] for a count below zero.
-    pub fn from_counted(
+    pub(crate) fn from_counted(
         colors: impl IntoIterator<Item = (Vector3<f64>, f64)>,
         max_points: usize,
     ) -> Result<Self, TrackingError> {
@@ -97,7 +97,10 @@ impl ColorCloud {
     /// Principal colours of the cloud; axes continue those of `previous`.
     /// # Errors
     /// Returns the errors of [`PrincipalColors::of`].
-    pub fn principal(&self, previous: Option<&PrincipalColors>) -> Result<PrincipalColors, TrackingError> {
+    pub(crate) fn principal(
+        &self,
+        previous: Option<&PrincipalColors>,
+    ) -> Result<PrincipalColors, TrackingError> {
         PrincipalColors::of(&self.points, &self.counts, previous)
     }
 

@@ -52,7 +52,7 @@ impl ColorDynamics {
     ///
     /// # Errors
     /// Returns [`TrackingError::NotFinite`].
-    pub fn from_matrices(
+    pub(crate) fn from_matrices(
         from_value: Square,
         from_velocity: Square,
         noise: Square,

@@ -94,6 +94,7 @@ fn square_root(covariance: &Square) -> Square {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
     use rand::SeedableRng as _;
     use rand_chacha::ChaCha8Rng;
 
@@ -153,7 +154,7 @@ mod tests {
         let noise = truth().noise().fixed_rows::<COLOR_DIM>(0).into_owned();
         let ratio = learned.residual_covariance.trace() / (noise * noise.transpose()).trace();
         // The standard error of the trace is below that of one variance, sqrt(2/n) = 0.023.
-        assert!((ratio - 1.0).abs() < 5.0 * 0.023, "{ratio}");
+        assert_abs_diff_eq!(ratio, 1.0, epsilon = 5.0 * 0.023);
         let fifteen: Vec<&[ColorStateVector]> = whole.chunks(3).take(15).collect();
         assert!(matches!(ColorDynamics::learn(&fifteen, 1.0), Err(TrackingError::Empty { .. })));
     }
@@ -167,7 +168,7 @@ mod tests {
             value: ColorStateVector::repeat(0.5),
             velocity: ColorStateVector::zeros(),
         };
-        assert!((learned.dynamics.expected(&state).value - state.value).amax() < 1e-9);
+        assert_abs_diff_eq!(learned.dynamics.expected(&state).value, state.value, epsilon = 1e-9);
         assert!(ColorDynamics::learn(&[&still[..17]], 1.0).is_err());
         assert!(ColorDynamics::learn(&[&still], f64::NAN).is_err());
     }

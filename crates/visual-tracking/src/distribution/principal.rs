@@ -128,6 +128,7 @@ fn in_falling_order(eigen: &SymmetricEigen<f64, nalgebra::Const<3>>) -> Matrix3<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     fn ellipsoid(axes: &Rotation3<f64>, axis_sigmas: [f64; 3]) -> Vec<Vector3<f64>> {
         let mean = Vector3::new(0.5, 0.4, 0.3);
@@ -159,7 +160,7 @@ mod tests {
         assert_eq!(one_color.axis_sigmas, Vector3::zeros());
         let line = [Vector3::new(0.1, 0.5, 0.5), Vector3::new(0.9, 0.5, 0.5)];
         let planar = PrincipalColors::of(&line, &[1.0; 2], Some(&previous)).unwrap();
-        assert!((planar.axes.matrix().determinant() - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(planar.axes.matrix().determinant(), 1.0, epsilon = 1e-9);
     }
 
     #[test]
@@ -172,7 +173,8 @@ mod tests {
             PrincipalColors::of(&ellipsoid(&turn, [0.2, 0.1, 0.05]), &[1.0; 6], Some(&previous)).unwrap();
         let [theta, phi] = next.angles_since(&previous);
         // The prior of the previous axes biases the angle by ε over the gap of the variances, 1.3e-6 / 0.03 here, twice.
-        assert!((theta - 0.2).abs() < 1e-4 && (phi - 0.1).abs() < 1e-4, "{theta} {phi}");
+        assert_abs_diff_eq!(theta, 0.2, epsilon = 1e-4);
+        assert_abs_diff_eq!(phi, 0.1, epsilon = 1e-4);
     }
 
     #[test]

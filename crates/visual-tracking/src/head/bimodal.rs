@@ -125,6 +125,7 @@ mod tests {
     use super::*;
     use crate::RgbImage;
     use crate::{ColorBinImage, ColorSpace};
+    use approx::assert_abs_diff_eq;
 
     const SKIN: [u8; 3] = [220, 160, 130];
     const HAIR: [u8; 3] = [60, 40, 30];
@@ -142,12 +143,12 @@ mod tests {
         let back = histogram(&quantizer, &[HAIR; 4]);
         let wall = histogram(&quantizer, &[[90, 140, 200]; 4]);
         let two = BimodalHistogram::new(&quantizer, front.counts(), true).unwrap();
-        assert!((two.intersection(&back, 4) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(two.intersection(&back, 4), 1.0, epsilon = 1e-12);
         assert!(two.intersection(&wall, 4) < 1e-12);
         // one mode has a quarter hair: the minimum with all hair is a quarter
         let one = BimodalHistogram::new(&quantizer, front.counts(), false).unwrap();
-        assert!((one.intersection(&back, 4) - 0.25).abs() < 1e-12);
-        assert!((one.intersection(&front, 4) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(one.intersection(&back, 4), 0.25, epsilon = 1e-12);
+        assert_abs_diff_eq!(one.intersection(&front, 4), 1.0, epsilon = 1e-12);
     }
 
     #[test]
@@ -157,8 +158,8 @@ mod tests {
             BimodalHistogram::new(&quantizer, histogram(&quantizer, &[SKIN, HAIR]).counts(), true).unwrap();
         let paler = [250, 200, 170];
         model.adapt(histogram(&quantizer, &[paler; 2]).counts(), 0.25);
-        assert!((model.intersection(&histogram(&quantizer, &[paler]), 1) - 0.25).abs() < 1e-12);
-        assert!((model.intersection(&histogram(&quantizer, &[SKIN]), 1) - 0.75).abs() < 1e-12);
-        assert!((model.intersection(&histogram(&quantizer, &[HAIR]), 1) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(model.intersection(&histogram(&quantizer, &[paler]), 1), 0.25, epsilon = 1e-12);
+        assert_abs_diff_eq!(model.intersection(&histogram(&quantizer, &[SKIN]), 1), 0.75, epsilon = 1e-12);
+        assert_abs_diff_eq!(model.intersection(&histogram(&quantizer, &[HAIR]), 1), 1.0, epsilon = 1e-12);
     }
 }

@@ -111,6 +111,7 @@ fn level(strength: f32) -> usize {
 mod tests {
     use super::*;
     use crate::{ColorQuantizer, ColorSpace, RgbImage, SlidingHistogram};
+    use approx::abs_diff_eq;
 
     const SIZE: (usize, usize) = (60, 50);
 
@@ -148,7 +149,7 @@ mod tests {
                     plain += ratios.colors[usize::from(bin)];
                 }
             }
-            assert!((sums.inside(&spans, center) - plain).abs() < 1e-9, "{center:?}");
+            assert!(abs_diff_eq!(sums.inside(&spans, center), plain, epsilon = 1e-9), "{center:?}");
         }
     }
 

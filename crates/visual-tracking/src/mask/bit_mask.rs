@@ -128,31 +128,6 @@ impl PixelMask {
         Self { words, ..*self }
     }
 
-    /// The pixels of a rectangle; pixels beyond the edges are off.
-    /// # Errors
-    /// Returns the errors of [`empty`](Self::empty).
-    pub fn crop(
-        &self,
-        corner: (usize, usize),
-        (width, height): (usize, usize),
-    ) -> Result<Self, TrackingError> {
-        let mut mask = Self::empty(width, height)?;
-        let (first, shift) = (corner.0 / 64, corner.0 % 64);
-        for v in 0..height.min(self.height.saturating_sub(corner.1)) {
-            let source = self.row(corner.1 + v);
-            let word = |i: usize| source.get(i).copied().unwrap_or(0);
-            for (i, target) in mask.row_mut(v).iter_mut().enumerate() {
-                // Twice by half, since a shift by 64 is none.
-                let next = word(first.saturating_add(i + 1)) << (63 - shift) << 1;
-                *target = word(first.saturating_add(i)) >> shift | next;
-            }
-            if let Some(last) = mask.row_mut(v).last_mut() {
-                *last &= padding(width);
-            }
-        }
-        Ok(mask)
-    }
-
     /// Rows and the columns in them that are on without a gap, from the top left.
     pub fn runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
         self.rows().enumerate().flat_map(|(v, row)| runs(row).map(move |run| (v, run)))

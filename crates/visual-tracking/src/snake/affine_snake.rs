@@ -121,14 +121,14 @@ impl AffineSnake {
     }
 
     /// The area under a map, in square pixels.
-    pub fn area_at(&self, map: &AffineMap) -> f64 {
+    pub(crate) fn area_at(&self, map: &AffineMap) -> f64 {
         std::f64::consts::PI * map.linear.determinant().abs()
     }
 
     /// Sets the map.
     /// # Errors
     /// Returns [`TrackingError::Parameter`] if the map turns the shape over or flattens it.
-    pub fn moved_to(&self, map: &AffineMap) -> Result<Self, TrackingError> {
+    pub(crate) fn moved_to(&self, map: &AffineMap) -> Result<Self, TrackingError> {
         self.outline_at(map)?;
         checked("determinant", map.linear.determinant(), map.linear.determinant() > 0.0, "positive")?;
         Ok(Self { map: *map, ..self.clone() })

@@ -146,6 +146,7 @@ fn vertex(values: &[f64], i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     #[test]
     fn a_step_between_two_colours_is_found_where_it_is() {
@@ -155,7 +156,7 @@ mod tests {
         let edges = ColorEdgeSearch::new(&picture, 20.0);
         for start in [5.0, 6.5, 8.0, 9.5] {
             let found = edges.find([start, 5.0], [1.0, 0.0], 5.0).unwrap();
-            assert!((start + found - 8.0).abs() <= 0.5, "from {start}: {found}");
+            assert!(abs_diff_eq!(start + found, 8.0, epsilon = 0.5), "from {start}: {found}");
         }
         assert_eq!(edges.find([2.0, 5.0], [1.0, 0.0], 3.0), None);
         let elsewhere = PixelMask::from_fn(20, 10, |u, _| u > 12).unwrap();

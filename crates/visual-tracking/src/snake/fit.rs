@@ -124,6 +124,7 @@ fn along<'a>(
 #[cfg(test)]
 mod tests {
     use crate::{AffineSnake, BoundingBox, MaskEdgeSearch, Outline, PixelMask, SnakeParams};
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     fn ellipse(u: f64, v: f64, a: f64, b: f64) -> impl Fn(usize, usize) -> bool {
         move |x, y| ((x as f64 + 0.5 - u) / a).powi(2) + ((y as f64 + 0.5 - v) / b).powi(2) < 1.0
@@ -143,8 +144,8 @@ mod tests {
         let snake = snake();
         let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
-        assert!((outline.centroid()[0] - 64.0).abs() < 1.5, "{:?}", outline.centroid());
-        assert!((outline.centroid()[1] - 62.0).abs() < 1.0, "{:?}", outline.centroid());
+        assert!(abs_diff_eq!(outline.centroid()[0], 64.0, epsilon = 1.5), "{:?}", outline.centroid());
+        assert!(abs_diff_eq!(outline.centroid()[1], 62.0, epsilon = 1.0), "{:?}", outline.centroid());
         assert!(fit.support > 0.5 && fit.support < 0.9, "{}", fit.support);
     }
 
@@ -167,7 +168,7 @@ mod tests {
         for mask in [PixelMask::empty(120, 120).unwrap(), PixelMask::full(120, 120).unwrap()] {
             let fit = snake.fit(snake.map(), &MaskEdgeSearch::new(&mask, (0, 0)), &SnakeParams::default());
             assert_eq!((fit.support, fit.visible), (0.0, 1.0));
-            assert!((fit.map.translation - snake.map().translation).norm() < 1e-9);
+            assert_abs_diff_eq!(fit.map.translation, snake.map().translation, epsilon = 1e-9);
         }
         let elsewhere = PixelMask::full(10, 10).unwrap();
         let fit =

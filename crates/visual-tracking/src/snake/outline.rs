@@ -147,7 +147,7 @@ impl Outline {
     }
 
     /// The smallest convex outline around it, by Andrew's monotone chain.
-    pub fn convex_hull(&self) -> Self {
+    pub(crate) fn convex_hull(&self) -> Self {
         let mut sorted = self.points.clone();
         sorted.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
         let turn = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| {
@@ -197,16 +197,18 @@ fn signed_area(points: &[[f64; 2]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn ellipse_outline_has_area_centre_and_outward_normals() {
         let bounds = BoundingBox::from_corner(10.0, 20.0, 40.0, 20.0).unwrap();
         let ellipse = Outline::ellipse(&bounds, 200).unwrap();
-        assert!((ellipse.area() - std::f64::consts::PI * 200.0).abs() < 1.0);
-        assert!((ellipse.centroid()[0] - 30.0).abs() < 1e-9 && (ellipse.centroid()[1] - 30.0).abs() < 1e-9);
+        assert_abs_diff_eq!(ellipse.area(), std::f64::consts::PI * 200.0, epsilon = 1.0);
+        assert_abs_diff_eq!(ellipse.centroid()[0], 30.0, epsilon = 1e-9);
+        assert_abs_diff_eq!(ellipse.centroid()[1], 30.0, epsilon = 1e-9);
         for (point, normal) in ellipse.points().iter().zip(ellipse.normals()) {
             assert!((point[0] - 30.0) * normal[0] + (point[1] - 30.0) * normal[1] > 0.0);
-            assert!((normal[0].hypot(normal[1]) - 1.0).abs() < 1e-12);
+            assert_abs_diff_eq!(normal[0].hypot(normal[1]), 1.0, epsilon = 1e-12);
         }
         assert!(ellipse.bounding_box().iou(&bounds) > 0.999);
     }

@@ -40,7 +40,7 @@ impl PlaybackPace {
     }
 
     /// Waits until a message with this stamp is due; the first is due at once.
-    pub fn wait_for(&mut self, stamp: Stamp) {
+    pub(crate) fn wait_for(&mut self, stamp: Stamp) {
         let (since, due) = self.due(stamp);
         thread::sleep(due.saturating_sub(since.elapsed()));
     }

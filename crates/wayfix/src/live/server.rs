@@ -92,12 +92,12 @@ impl LiveServer {
     }
 
     /// Returns when a viewer is connected.
-    pub fn wait_for_viewer(&self) {
+    pub(crate) fn wait_for_viewer(&self) {
         self.audience.wait_for_viewer();
     }
 
     /// Returns when no viewer is connected.
-    pub fn wait_until_all_left(&self) {
+    pub(crate) fn wait_until_all_left(&self) {
         self.audience.wait_until_all_left(GRACE);
     }
 }

@@ -1,6 +1,7 @@
 //! `wayfix run cml` on frames with poses and on logs, as its users call it, with bad input too.
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::{ffi::OsStr, fs, path::PathBuf};
 
 use crate::common::{Scratch, wayfix};
@@ -37,7 +38,10 @@ fn every_kind_of_table_gives_the_same_run() {
         let figures = frames_run(&folder, &poses, more).figures();
         for ((name, value), (_, expected)) in figures.iter().zip(&expected) {
             // Degrees and centimetres round the last digits.
-            assert!((value - expected).abs() <= 1e-6 * (1.0 + expected.abs()), "{name}: {value} {expected}");
+            assert!(
+                abs_diff_eq!(value, expected, epsilon = 1e-6 * (1.0 + expected.abs())),
+                "{name}: {value} {expected}"
+            );
         }
     }
 }
@@ -76,7 +80,7 @@ fn without_headings_the_robot_looks_along_its_path() {
     fs::copy(folder.join("times.csv"), mirrored.join("times.csv")).unwrap();
     let other = frames_run(&mirrored, &poses, &[]);
     assert!(other.stderr.contains("columns go counterclockwise"), "{}", other.stderr);
-    assert!((other.metric("error_mean_m") - outcome.metric("error_mean_m")).abs() < 0.02);
+    assert_abs_diff_eq!(other.metric("error_mean_m"), outcome.metric("error_mean_m"), epsilon = 0.02);
 }
 
 #[test]

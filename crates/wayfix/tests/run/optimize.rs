@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::fs;
 
 use super::common::{Scratch, wayfix};
@@ -27,7 +28,8 @@ fn optimized_graph_has_the_figures_and_is_its_own_optimum() {
         assert!(fs::metadata(format!("{out}/{file}")).unwrap().len() > 100, "{file}");
     }
     let again = wayfix(["optimize", better, "--json", "--start", "file"]);
-    assert!((again.metric("start_cost") / cost - 1.0).abs() < 1e-9 && again.metric("iterations") <= 2.0);
+    assert_abs_diff_eq!(again.metric("start_cost") / cost, 1.0, epsilon = 1e-9);
+    assert!(again.metric("iterations") <= 2.0);
 }
 
 #[test]
@@ -42,7 +44,7 @@ fn methods_and_starts_agree() {
     for method in ["gauss-newton", "dogleg", "levenberg-marquardt"] {
         for start in ["file", "linear"] {
             assert!(
-                (cost(["--start", start, "--method", method]) / expected - 1.0).abs() < 1e-6,
+                abs_diff_eq!(cost(["--start", start, "--method", method]) / expected, 1.0, epsilon = 1e-6),
                 "{method} {start}"
             );
         }

@@ -125,7 +125,7 @@ impl ViewDifferenceModel {
     }
 
     /// Median difference of successive views; 0 before the first two.
-    pub fn step_distance(&self) -> f64 {
+    pub(crate) fn step_distance(&self) -> f64 {
         self.fitted.near
     }
 
@@ -150,7 +150,7 @@ impl ViewDifferenceModel {
     }
 
     /// The square of a difference relative to the sill, $`E^2 / \text{sill}`$, at most 1.
-    pub fn share_of_sill(&self, distance: f64) -> f64 {
+    pub(crate) fn share_of_sill(&self, distance: f64) -> f64 {
         let share = distance * distance / self.fitted.sill;
         if share.is_nan() { 1.0 } else { share.min(1.0) }
     }

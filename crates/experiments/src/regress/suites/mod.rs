@@ -27,7 +27,7 @@ const SUITES: [(&str, Runner); 7] = [
 ];
 
 /// All suites, in the order of the report.
-pub fn names() -> Vec<&'static str> {
+pub(crate) fn names() -> Vec<&'static str> {
     SUITES.iter().map(|(name, _)| *name).collect()
 }
 

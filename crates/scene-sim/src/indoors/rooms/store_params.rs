@@ -124,6 +124,7 @@ impl RetailStoreParams {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn shelves_and_aisles_fill_the_store() {
@@ -131,8 +132,8 @@ mod tests {
             params.validate().unwrap();
             let (_, high) = params.shelf(params.n_rows() * params.n_blocks - 1);
             let gaps = params.gaps();
-            assert!((high.x + gaps.x - 0.5 * params.length_m).abs() < 1e-9);
-            assert!((high.y + gaps.y - 0.5 * params.width_m).abs() < 1e-9);
+            assert_abs_diff_eq!(high.x + gaps.x, 0.5 * params.length_m, epsilon = 1e-9);
+            assert_abs_diff_eq!(high.y + gaps.y, 0.5 * params.width_m, epsilon = 1e-9);
             assert!(gaps.y >= params.min_aisle_width_m && gaps.x >= params.min_cross_aisle_width_m);
         }
     }

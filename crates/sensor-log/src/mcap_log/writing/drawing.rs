@@ -166,6 +166,7 @@ fn label(pose: Option<Pose>, text: &str, color: Color) -> TextPrimitive {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn outline_lies_on_the_ellipse_from_the_first_axis() {
@@ -175,10 +176,10 @@ mod tests {
             let (dx, dy) = (x - center[0], y - center[1]);
             let along = dx * angle.cos() + dy * angle.sin();
             let across = dy * angle.cos() - dx * angle.sin();
-            assert!(((along / a).powi(2) + (across / b).powi(2) - 1.0).abs() < 1e-12);
+            assert_abs_diff_eq!((along / a).powi(2) + (across / b).powi(2), 1.0, epsilon = 1e-12);
         }
-        assert!((outline[0][0] - (center[0] + a * angle.cos())).abs() < 1e-12);
-        assert!((outline[0][1] - (center[1] + a * angle.sin())).abs() < 1e-12);
+        assert_abs_diff_eq!(outline[0][0], center[0] + a * angle.cos(), epsilon = 1e-12);
+        assert_abs_diff_eq!(outline[0][1], center[1] + a * angle.sin(), epsilon = 1e-12);
     }
 
     #[test]

@@ -38,7 +38,7 @@ impl Wall {
         self.stretch.map(|along| self.origin + self.line.point_at(along))
     }
     /// The same wall, extended to these points.
-    pub fn extended_to(&self, points: [Vector2<f64>; 2]) -> Self {
+    pub(crate) fn extended_to(&self, points: [Vector2<f64>; 2]) -> Self {
         let [low, high] = self.stretch;
         let [a, b] = points.map(|point| self.line.along(&(point - self.origin)));
         Self { stretch: [low.min(a.min(b)), high.max(a.max(b))], ..*self }

@@ -66,7 +66,7 @@ impl Manifold for WallMeasurement {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_abs_diff_eq;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     use super::*;
 
@@ -88,6 +88,10 @@ mod tests {
             &Vector2::zeros(),
         );
         let expected = jacobian * seen.covariance * jacobian.transpose();
-        assert!((carried.covariance - expected).norm() < 1e-9, "{}", carried.covariance - expected);
+        assert!(
+            abs_diff_eq!(carried.covariance, expected, epsilon = 1e-9),
+            "{}",
+            carried.covariance - expected
+        );
     }
 }

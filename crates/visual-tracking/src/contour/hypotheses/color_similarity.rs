@@ -61,18 +61,19 @@ fn overlap(apart: &Vector3<f64>, p: &Matrix3<f64>, q: &Matrix3<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn the_overlap_of_gaussians_is_that_of_their_formula() {
         let unit = Matrix3::identity();
         let none = Vector3::zeros();
-        assert!((overlap(&none, &unit, &unit) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(overlap(&none, &unit, &unit), 1.0, epsilon = 1e-12);
         // One standard deviation apart in each of two axes: exp(-2/8).
         let apart = Vector3::new(1.0, -1.0, 0.0);
-        assert!((overlap(&apart, &unit, &unit) - (-0.25_f64).exp()).abs() < 1e-12);
+        assert_abs_diff_eq!(overlap(&apart, &unit, &unit), (-0.25_f64).exp(), epsilon = 1e-12);
         // Standard deviations 1 and 3 along one axis: sqrt(3 / 5).
         let wide = Matrix3::from_diagonal(&Vector3::new(9.0, 1.0, 1.0));
-        assert!((overlap(&none, &unit, &wide) - 0.6_f64.sqrt()).abs() < 1e-12);
+        assert_abs_diff_eq!(overlap(&none, &unit, &wide), 0.6_f64.sqrt(), epsilon = 1e-12);
         assert_eq!(overlap(&Vector3::repeat(f64::NAN), &(unit * f64::NAN), &unit), 0.0);
     }
 }

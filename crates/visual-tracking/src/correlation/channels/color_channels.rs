@@ -48,13 +48,14 @@ fn add_classes(&[r, g, b]: &[f32; 3], share: f32, classes: &mut [f32; N_COLOR]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     #[test]
     fn every_pixel_is_shared_out_once() {
         let pixels: Vec<_> =
             (0..64).map(|i| [(i * 37 % 256) as f32, (i * 91 % 256) as f32, (i * 53 % 256) as f32]).collect();
         for (classes, grey) in color_channels(&Patch { width: 8, height: 8, pixels }, 4) {
-            assert!((classes.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            assert_abs_diff_eq!(classes.iter().sum::<f32>(), 1.0, epsilon = 1e-5);
             assert!((0.0..=1.0).contains(&grey));
         }
     }
@@ -65,7 +66,7 @@ mod tests {
         for (class, color) in colors.into_iter().enumerate() {
             let pixels = vec![color.map(|v: u8| f32::from(v)); 16];
             let (classes, _) = color_channels(&Patch { width: 4, height: 4, pixels }, 4)[0];
-            assert!((classes[class] - 1.0).abs() < 1e-5, "{class}: {classes:?}");
+            assert!(abs_diff_eq!(classes[class], 1.0, epsilon = 1e-5), "{class}: {classes:?}");
         }
     }
 }

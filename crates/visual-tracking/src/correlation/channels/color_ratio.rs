@@ -93,6 +93,7 @@ fn bin(pixel: &[f32; 3]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn colours_of_the_target_stand_out_from_those_around() {
@@ -118,7 +119,7 @@ mod tests {
         };
         let mut colors = ColorRatio::new();
         colors.learn(&patch([200.0, 40.0, 40.0]), [16.0, 16.0], 1.0);
-        assert!((colors.agreement(&patch([200.0, 40.0, 40.0]), [16.0, 16.0]) - 1.0).abs() < 1e-6);
+        assert_abs_diff_eq!(colors.agreement(&patch([200.0, 40.0, 40.0]), [16.0, 16.0]), 1.0, epsilon = 1e-6);
         // 200 and 40 divided by 1.2 twice are 139 and 28, in other bins of 16 values.
         assert!(colors.agreement(&patch([139.0, 28.0, 28.0]), [16.0, 16.0]) > 0.99);
         assert_eq!(colors.agreement(&patch([40.0, 90.0, 200.0]), [16.0, 16.0]), 0.0);

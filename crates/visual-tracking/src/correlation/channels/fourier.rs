@@ -105,6 +105,7 @@ const HALF_SQRT_3: f32 = 0.866_025_4;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     #[test]
     fn agrees_with_the_sum_of_the_definition() {
@@ -125,8 +126,8 @@ mod tests {
                         im += a * sin + b * cos;
                     }
                     // f32 rounding of sums of up to 64 numbers below 14
-                    assert!((f64::from(got.re[c]) - re).abs() < 1e-3, "{len} {k}");
-                    assert!((f64::from(got.im[c]) - im).abs() < 1e-3, "{len} {k}");
+                    assert!(abs_diff_eq!(f64::from(got.re[c]), re, epsilon = 1e-3), "{len} {k}");
+                    assert!(abs_diff_eq!(f64::from(got.im[c]), im, epsilon = 1e-3), "{len} {k}");
                 }
             }
         }

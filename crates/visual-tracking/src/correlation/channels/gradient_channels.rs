@@ -125,6 +125,7 @@ fn angle(x: f32, y: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::assert_abs_diff_eq;
 
     #[test]
     fn angles_are_those_of_the_arc_tangent() {
@@ -156,7 +157,7 @@ mod tests {
         };
         let (bright, dim) = (gradient_channels(&patch(1.0), 4), gradient_channels(&patch(0.5), 4));
         for (a, b) in bright.iter().flatten().zip(dim.iter().flatten()) {
-            assert!((a - b).abs() < 0.01, "{a} {b}"); // only the noise floor distinguishes them
+            assert_abs_diff_eq!(a, b, epsilon = 0.01); // only the noise floor distinguishes them
         }
     }
 }

@@ -118,6 +118,7 @@ impl Taps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::abs_diff_eq;
 
     fn ramp() -> RgbImage {
         let value = |i: usize| [(4 * (i % 20)) as u8, (5 * (i / 20)) as u8, 7];
@@ -138,7 +139,7 @@ mod tests {
         let row: Vec<f32> = turned.pixels[..4].iter().map(|pixel| pixel[1]).collect();
         // rows 6 to 9 of the ramp, which grows by 5 a row
         for (value, expected) in row.iter().zip([30.0, 35.0, 40.0, 45.0]) {
-            assert!((value - expected).abs() < 1e-3, "{row:?}");
+            assert!(abs_diff_eq!(*value, expected, epsilon = 1e-3), "{row:?}");
         }
         assert!(turned.pixels[..4].iter().all(|pixel| (pixel[0] - turned.pixels[0][0]).abs() < 1e-3));
     }
@@ -148,7 +149,7 @@ mod tests {
         let patch = Patch::sampled(&ramp(), [10.0, 8.0], [10.0, 8.0], (5, 16));
         for (x, pixel) in patch.pixels[..5].iter().enumerate() {
             // pixel x covers columns 5 + 2x and 6 + 2x
-            assert!((pixel[0] - 4.0 * (5.5 + 2.0 * x as f32)).abs() < 1e-4, "{x}");
+            assert!(abs_diff_eq!(pixel[0], 4.0 * (5.5 + 2.0 * x as f32), epsilon = 1e-4), "{x}");
         }
         let beyond = Patch::sampled(&ramp(), [-50.0, 100.0], [4.0, 4.0], (2, 2));
         assert!(beyond.pixels.iter().all(|pixel| *pixel == [0.0, 75.0, 7.0]));

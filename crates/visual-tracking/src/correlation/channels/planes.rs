@@ -152,6 +152,7 @@ impl PlaneFourier {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use approx::{abs_diff_eq, assert_abs_diff_eq};
 
     fn planes(side: usize) -> Planes {
         let mut planes = Planes::zeros(side, 2);
@@ -168,7 +169,7 @@ mod tests {
             let planes = planes(side);
             let back = fourier.backward(&fourier.forward(&planes));
             for (a, b) in planes.cells.iter().flatten().zip(back.cells.iter().flatten()) {
-                assert!((a - b).abs() < 1e-4, "{a} {b}"); // f32 rounding of numbers below 10
+                assert_abs_diff_eq!(a, b, epsilon = 1e-4); // f32 rounding of numbers below 10
             }
         }
     }
@@ -186,7 +187,7 @@ mod tests {
         let spectrum = PlaneFourier::new(side).forward(&planes);
         for (i, bin) in spectrum.bins.iter().enumerate() {
             let expected = if i == kx * side + ky { (side * side) as f32 / 2.0 } else { 0.0 };
-            assert!((bin.re[3] - expected).abs() < 1e-3 && bin.im[3].abs() < 1e-3, "{i}");
+            assert!(abs_diff_eq!(bin.re[3], expected, epsilon = 1e-3) && bin.im[3].abs() < 1e-3, "{i}");
         }
     }
 }
