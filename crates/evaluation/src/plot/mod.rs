@@ -41,4 +41,6 @@ pub use picture::SvgPlot;
 pub use svg::axis::AxisScale;
 pub(crate) use svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub(crate) use svg::markup::escape;
+pub use svg::named::named_color;
+pub(crate) use svg::named::named_palette;
 pub use times::StepTimesPlot;

@@ -8,7 +8,7 @@ use wayfix_evaluation::{
     errors::PoseWithTruth,
     plot::{
         FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries, PoseErrorPlot,
-        PoseErrorSample, SvgPlot,
+        PoseErrorSample, SvgPlot, named_color,
     },
 };
 
@@ -56,6 +56,7 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
         title: "What the camera saw, and what it was classified as".to_owned(),
         ..FilmStrip::default()
     };
+    let paints = paints(run.system.map());
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
     // Classifies with the light at the end of the log, so early frames may look wrong.
     for k in 0..n_frames.min(images.len()) {
@@ -69,7 +70,8 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
             run.system.params().yuv_standard,
         )?;
         let labels = run.system.classified(&yuv).map_err(anyhow::Error::msg)?;
-        let pixels: Vec<u8> = labels.iter().flat_map(|label| paint(*label)).collect();
+        let paint = |label: &u8| paints.get(usize::from(*label)).copied().unwrap_or(BACKGROUND);
+        let pixels: Vec<u8> = labels.iter().flat_map(paint).collect();
         let caption = format!("{seconds:.1} s");
         seen.push(FilmStripFrame { image: image.to_browser_format()?, caption: caption.clone() });
         let painted = EncodedImage::png_rgb(decoded.width, decoded.height, &pixels)?;
@@ -79,19 +81,14 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
     Ok(film.draw()?)
 }
 
-/// Display colour of a label: the first ones as in the four-legged league, others spread over the hues.
-fn paint(label: u8) -> [u8; 3] {
-    const PAINTS: [[u8; 3]; 8] = [
-        [40, 140, 60],
-        [245, 245, 245],
-        [250, 210, 40],
-        [60, 190, 235],
-        [245, 120, 180],
-        [245, 130, 30],
-        [200, 40, 40],
-        [50, 70, 200],
-    ];
-    if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
+/// Display colour of what has no class.
+const BACKGROUND: [u8; 3] = [96, 96, 100];
+
+/// How each colour of the map looks: by its name, others by their order.
+fn paints(map: &ColorMap) -> Vec<[u8; 3]> {
+    const OTHERS: [[u8; 3]; 4] = [[40, 140, 60], [250, 210, 40], [245, 130, 30], [50, 70, 200]];
+    let paint = |(k, name): (usize, &String)| named_color(name).unwrap_or(OTHERS[k % OTHERS.len()]);
+    map.colors().iter().enumerate().map(paint).collect()
 }
 
 fn path(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> MapPlot {
