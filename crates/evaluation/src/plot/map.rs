@@ -78,10 +78,10 @@ impl MapPlot {
 
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
         self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
+        panel.dots(&self.echoes, 0.8, Ink::ECHO, 0.9)?;
         self.bands.iter().try_for_each(|band| panel.outline(band, Ink::LANDMARK))?;
         self.references.iter().try_for_each(|place| panel.dot(*place, 1.8, Ink::LANDMARK, 1.0))?;
         self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.6))?;
-        panel.dots(&self.echoes, 0.8, Ink::ECHO, 0.9)?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
         panel.path(&self.estimate, Ink::ESTIMATE, 1.4)?;

@@ -1,5 +1,5 @@
 /// Figures by the end of their names, or by the beginning where it ends in `_`; the first match counts.
-const MEANINGS: [(&str, &str); 85] = [
+const MEANINGS: [(&str, &str); 86] = [
     ("n_localized_views", "views after which the pose was estimated"),
     ("unimodal_share", "share of the views after which one place only was believed"),
     ("n_labelled_images", "images with true labels of their pixels"),
@@ -99,6 +99,7 @@ const MEANINGS: [(&str, &str); 85] = [
     ("center_error_mean_px", "distance of the centre of the target from the truth"),
     ("classification_rate", "share of the labelled pixels that got their true colour class"),
     ("rate_", "share that is right"),
+    ("classification_rate_", "share of the labelled pixels of a class that got their true colour class"),
     ("ess_mean", "mean effective number of particles"),
     ("n_particles_mean", "mean number of particles"),
     ("position_", "distance from the true position"),

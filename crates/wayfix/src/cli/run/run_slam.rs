@@ -23,7 +23,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all},
+    read_problems::{add_read_problems, read_all, read_overview},
     truth::TruthFile,
 };
 use super::{
@@ -145,12 +145,17 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         topics: arguments.topics.topics.clone(),
         ..LogOpenOptions::default()
     };
-    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
+    let log = open()?;
     let meta = log.meta().clone();
-    let (records, read) = read_all(log);
+    // A pipe can be read only once.
+    let is_kept =
+        arguments.truth.truth.is_some() || arguments.log.iter().any(|path| !path.is_file() && !path.is_dir());
+    let (records, read) = if is_kept { read_all(log) } else { read_overview(log) };
     let records = arguments.truth.put_into(records)?;
     if run_walls::is_for(&records) {
-        return run_walls::main(&arguments, &records, meta.first_format(), &read);
+        let input = run_walls::Input { records, is_kept, origin: meta.first_format(), read };
+        return run_walls::main(&arguments, input, &open);
     }
     let origin = meta.first_format();
     let params = params(&arguments, RobotProfile::of_log(&meta))?;
