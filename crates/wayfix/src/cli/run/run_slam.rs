@@ -56,8 +56,8 @@ pub(in crate::cli) struct Arguments {
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(in crate::cli) log: Vec<PathBuf>,
-    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json, mcap or plaza [default: detected from the content].
-    #[arg(long)]
+    /// How the log is stored [default: detected from the content].
+    #[arg(long, value_parser = run_ranges::slam_log_format())]
     pub(in crate::cli) format: Option<SlamLogFormat>,
     /// What estimates: a filter, or least squares over all poses of a window.
     #[arg(long, value_enum, value_name = "NAME", default_value = "ekf")]
@@ -148,9 +148,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
     let log = open()?;
     let meta = log.meta().clone();
-    // A pipe can be read only once.
-    let is_kept =
-        arguments.truth.truth.is_some() || arguments.log.iter().any(|path| !path.is_file() && !path.is_dir());
+    let is_kept = arguments.truth.truth.is_some();
     let (records, read) = if is_kept { read_all(log) } else { read_overview(log) };
     let records = arguments.truth.put_into(records)?;
     if run_walls::is_for(&records) {
