@@ -1,3 +1,5 @@
+use std::borrow::Borrow;
+
 use anyhow::Result;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::{LightingFilter, YuvImage};
@@ -40,18 +42,24 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
     map.colors().iter().enumerate().map(ellipse).collect()
 }
 
-/// Camera frames beside their classification, spread evenly over the log. [Schulz & Fox 2004, Fig. 4]
+/// Camera frames beside their classification, spread evenly over the log of `n_images`. [Schulz & Fox 2004, Fig. 4]
 ///
 /// # Errors
 /// Returns an error if an image cannot be decoded or a picture not be drawn.
-pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<SvgPlot> {
-    let images: Vec<(f64, &EncodedImage)> = records
-        .iter()
-        .filter_map(|record| match &record.data {
-            RecordData::Image(image) => Some((run.seconds(record.stamp), image)),
-            _ => None,
-        })
-        .collect();
+pub fn film<R: Borrow<Record>>(
+    run: &mut ColorRun,
+    n_images: usize,
+    records: impl IntoIterator<Item = R>,
+    n_frames: usize,
+) -> Result<SvgPlot> {
+    let n_frames = n_frames.min(n_images);
+    let is_shown = |number: usize| (1..=n_frames).any(|k| n_images * k / (n_frames + 1) == number);
+    let images = records.into_iter().filter_map(|record| match &record.borrow().data {
+        RecordData::Image(image) => Some((run.seconds(record.borrow().stamp), image.clone())),
+        _ => None,
+    });
+    let images: Vec<(f64, EncodedImage)> =
+        images.enumerate().filter(|(number, _)| is_shown(*number)).map(|(_, image)| image).collect();
     let mut film = FilmStrip {
         title: "What the camera saw, and what it was classified as".to_owned(),
         ..FilmStrip::default()
@@ -59,8 +67,7 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
     let paints = paints(run.system.map());
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
     // Classifies with the light at the end of the log, so early frames may look wrong.
-    for k in 0..n_frames.min(images.len()) {
-        let (seconds, image) = images[images.len() * (k + 1) / (n_frames.min(images.len()) + 1)];
+    for (seconds, image) in images {
         let decoded = image.decode_rgb()?;
         film.frame_size = (decoded.width, decoded.height);
         let yuv = YuvImage::from_rgb(
