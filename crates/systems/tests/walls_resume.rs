@@ -3,11 +3,11 @@
 
 use std::path::PathBuf;
 
-use wayfix_sensor_log::{LogOpenOptions, Record};
+use wayfix_sensor_log::{LaserScan, LogOpenOptions, Record, RecordData};
 use wayfix_systems::{
     points::SavedPointMap,
     slam::{AssociationRule, SavedMapError},
-    walls::{SavedWallMap, WallSlamParams, run, run_on},
+    walls::{SavedWallMap, WallSlamParams, run, run_on, run_streamed},
 };
 
 /// The office floor, up to a stamp that both halves of a run have in common.
@@ -35,6 +35,21 @@ fn a_resumed_run_goes_on_bit_for_bit() {
         let resumed = run_on(half, &records, &params, None, |_| {}).unwrap();
         assert_eq!(resumed.system.save().to_bytes().unwrap(), saved(&records), "{end}");
     }
+}
+
+#[test]
+fn a_streamed_run_is_that_of_the_kept_log_bit_for_bit() {
+    let records = office(600);
+    let without_ranges = |record: &Record| match &record.data {
+        RecordData::Scan(scan) => {
+            let data = RecordData::Scan(LaserScan { ranges: Vec::new(), ..scan.clone() });
+            Record { data, ..record.clone() }
+        }
+        _ => record.clone(),
+    };
+    let overview: Vec<Record> = records.iter().map(without_ranges).collect();
+    let streamed = run_streamed(&overview, records.clone(), &WallSlamParams::default(), |_| {}).unwrap();
+    assert_eq!(streamed.system.save().to_bytes().unwrap(), saved(&records));
 }
 
 #[test]
