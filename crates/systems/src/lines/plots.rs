@@ -1,8 +1,7 @@
 use nalgebra::Vector2;
 
 use super::{LineExtractionSystem, ScanWalls, truth::squared_distances};
-use crate::system::wall_band;
-use wayfix_evaluation::plot::{AxisScale, ConsistencyPlot, MapPlot, PlotError, SvgPlot};
+use wayfix_evaluation::plot::{AxisScale, ConsistencyPlot, MapPlot, PlotError, SvgPlot, wall_band};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_line_extract::WallSegment;
 
@@ -104,7 +103,8 @@ fn in_plane((bearing, range): &(f64, f64)) -> (f64, f64) {
 fn band(segment: &WallSegment) -> Vec<(f64, f64)> {
     let along = segment.estimate.line.direction();
     let ends = [segment.start, segment.end];
-    wall_band(ends, ends.map(|end| along.dot(&end)), segment.estimate.covariance)
+    let covariance = segment.estimate.covariance.transpose().into();
+    wall_band(ends.map(|end| (end.x, end.y)), ends.map(|end| along.dot(&end)), covariance)
 }
 
 fn line(start: Vector2<f64>, end: Vector2<f64>) -> Vec<(f64, f64)> {

@@ -5,14 +5,12 @@ mod estimate_recorder;
 mod known_start;
 mod laser;
 mod robot_drawing;
-mod wall_band;
 
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
 pub(crate) use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
-pub(crate) use wall_band::wall_band;
 pub use wayfix_evaluation::terminal::Stopwatch;
 pub use wayfix_record_checks::{
     EventCounts, FASTEST, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck,

@@ -299,7 +299,7 @@ impl WallSlamFrontEnd {
                         wall.ends[1].as_slice()
                     )
                 })?;
-                self.scan_sample.offer(&keyframe.scan, &estimator.filter.robot().pose);
+                self.scan_sample.offer(&keyframe.cloud, &estimator.filter.robot().pose);
                 nis(&report)
             };
         estimator.step += stopwatch.elapsed();

@@ -20,5 +20,5 @@ pub use odometry::OdometryBetweenScans;
 pub use params::{KeyframeThreshold, OdometryNoisePerScan, WallSlamParams};
 pub use plots::plots;
 pub use relative_motion::RelativeMotion;
-pub use run::{WallRun, run, run_on, run_on_streamed, run_streamed};
+pub use run::{WallRun, run, run_on, run_streamed};
 pub use state::{SavedScan, SavedWallMap, WallFrontEndState};

@@ -79,28 +79,13 @@ pub fn run_streamed<R: Borrow<Record>>(
 }
 
 /// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `association` is the rule
-/// that was asked for, if any.
+/// that was asked for, if any; `overview` and `records` are as in [`run_streamed`].
 ///
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
 ///
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
-pub fn run_on(
-    saved: SavedWallMap,
-    records: &[Record],
-    params: &WallSlamParams,
-    association: Option<AssociationRule>,
-    observe: impl FnMut(RunStep<'_, WallSystem>),
-) -> Result<WallRun> {
-    let in_time = without_odometry_delay(records, params.odometry_delay);
-    run_on_streamed(saved, records, in_time.iter(), params, association, observe)
-}
-
-/// As [`run_on`], with the records one by one, as in [`run_streamed`].
-///
-/// # Errors
-/// Returns the errors of [`run_on`].
-pub fn run_on_streamed<R: Borrow<Record>>(
+pub fn run_on<R: Borrow<Record>>(
     saved: SavedWallMap,
     overview: &[Record],
     records: impl IntoIterator<Item = R>,

@@ -8,6 +8,7 @@ use wayfix_sensor_log::{
 use wayfix_systems::{
     settings::from_toml,
     slam::AssociationRule,
+    system::without_odometry_delay,
     walls::{self, SavedWallMap, WallSlamParams},
 };
 
@@ -61,13 +62,14 @@ pub(in crate::cli) fn main(
             // What is to be sorted is kept.
             if is_kept || params.odometry_delay != 0.0 {
                 let records = if is_kept { records } else { open()?.read_all().0 };
+                let in_time = without_odometry_delay(&records, params.odometry_delay);
                 return match saved {
-                    Some(saved) => walls::run_on(saved, &records, &params, rule, observe),
-                    None => walls::run(&records, &params, observe),
+                    Some(saved) => walls::run_on(saved, &records, in_time.iter(), &params, rule, observe),
+                    None => walls::run_streamed(&records, in_time.iter(), &params, observe),
                 };
             }
             match saved {
-                Some(saved) => walls::run_on_streamed(saved, &records, open()?, &params, rule, observe),
+                Some(saved) => walls::run_on(saved, &records, open()?, &params, rule, observe),
                 None => walls::run_streamed(&records, open()?, &params, observe),
             }
         },
