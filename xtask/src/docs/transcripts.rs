@@ -50,13 +50,14 @@ fn rewritten(page: &str, output_of: &dyn Fn(&str) -> Result<String>) -> Result<S
     Ok(written)
 }
 
-/// What a command prints for people, in the root of the workspace.
+/// What a command prints for people, in the root of the workspace; the target directory has its usual name.
 fn output_of(command: &str) -> Result<String> {
     let programs = shell::target_dir().join("debug");
     let path = env::var_os("PATH").unwrap_or_default();
     let path = env::join_paths(once(programs).chain(env::split_paths(&path)))?;
     let mut shell = shell::command("sh", &["-c", &format!("{command} 2>&1")]);
-    shell::output(shell.env("PATH", path))
+    let printed = shell::output(shell.env("PATH", path))?;
+    Ok(printed.replace(&shell::target_dir().display().to_string(), "target"))
 }
 
 /// Beginning and end of a long output.
