@@ -65,6 +65,7 @@ fn steps() -> Result<Vec<Step>> {
         step("fmt", &["fmt", "--all", "--check"]),
         task("tidy", &["tidy"]),
         task("spelling", &["spelling"]),
+        task("licenses", &["licenses"]),
         step("clippy", &["clippy", "--workspace", "--all-targets", LIVE, "--locked", "--", "-D", "warnings"]),
         tests,
         step("doctests", &["test", "--workspace", LIVE, "--doc", "--locked"]),
@@ -113,6 +114,6 @@ mod tests {
     #[test]
     fn an_unknown_step_is_refused_with_the_list_of_steps() {
         let error = run(&["--from".into(), "lunch".into()]).unwrap_err();
-        assert!(error.to_string().contains("fmt tidy spelling clippy tests"), "{error}");
+        assert!(error.to_string().contains("fmt tidy spelling licenses clippy tests"), "{error}");
     }
 }

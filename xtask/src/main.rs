@@ -6,6 +6,7 @@ mod ci;
 mod clients;
 mod docs;
 mod fixtures;
+mod licenses;
 mod regress;
 mod robot;
 mod shell;
@@ -26,8 +27,10 @@ Usage: cargo xtask TASK [OPTIONS]
   ci                 what CI runs, cheap steps first; --from STEP resumes
   tidy               check the invariants of docs/architecture.md that a machine can check; --write redraws its picture
   spelling           look for misspelled words
+  licenses           check the licences of all dependencies against deny.toml
   docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it;
                      --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress;
+                     --transcripts runs the commands of the recordings in docs/ and writes what they print;
                      --papers [REPORT] writes docs/papers.md anew, with the measured figures of a report
   tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         "clients" => clients::run(&args),
         "campaign" => campaign::run(&args),
         "robot" => robot::run(&args),
+        "licenses" => licenses::run(&args),
         "spelling" => spelling::run(&args),
         "tutorials" => tutorials::run(&args),
         "" | "help" | "--help" | "-h" => {

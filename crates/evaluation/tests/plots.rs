@@ -2,8 +2,8 @@
 
 use approx::abs_diff_eq;
 use wayfix_evaluation::plot::{
-    AxisScale, ConsistencyPlot, EstimatedLandmark, LinePlot, MapPlot, PlotSeries, PoseErrorPlot,
-    PoseErrorSample, StepTimesPlot, SvgPlot,
+    AxisScale, ConsistencyPlot, CovarianceEllipsesPlot, EstimatedLandmark, LinePlot, MapPlot, NamedEllipse,
+    PlotSeries, PoseErrorPlot, PoseErrorSample, StepTimesPlot, SvgPlot,
 };
 
 /// The backend draws in tenths of a pixel.
@@ -191,4 +191,30 @@ fn long_noisy_runs_stay_small() {
     for picture in all_plots(&noise) {
         assert!(picture.svg.len() <= 60_000, "{} has {} bytes", picture.alt, picture.svg.len());
     }
+}
+
+#[test]
+fn a_class_named_after_a_colour_has_that_colour() {
+    let class = |name: &str| NamedEllipse {
+        name: name.to_owned(),
+        center: (120.0, 130.0),
+        covariance: [[9.0, 0.0], [0.0, 4.0]],
+    };
+    let groups = vec![("prior".to_owned(), ["ball", "green", "white"].map(class).to_vec())];
+    let plot = CovarianceEllipsesPlot { groups, sigmas: 1.0, ..Default::default() }.draw().expect("a plot");
+    for ink in ["var(--ink-0)", "var(--green)", "var(--white)"] {
+        assert!(plot.svg.contains(ink), "{ink}");
+    }
+    assert!(!plot.svg.contains("#F00D"));
+    assert!(plot.standalone().contains("--green:#"));
+}
+
+#[test]
+fn scan_points_in_one_pixel_are_one_dot() {
+    let crowd = (0..10_000).map(|k| (5.0 + 1e-6 * f64::from(k), 5.0));
+    let echoes = [(0.0, 0.0), (10.0, 10.0)].into_iter().chain(crowd).collect();
+    let band = vec![(1.0, 1.0), (2.0, 1.0), (2.0, 1.2), (1.0, 1.2), (1.0, 1.0)];
+    let map = MapPlot { echoes, bands: vec![band], ..MapPlot::default() }.draw().expect("a plot");
+    assert!(map.svg.matches("<circle").count() <= 6, "three places, two of the legend");
+    assert!(map.svg.contains("2σ of a wall") && map.svg.contains("scan point"));
 }

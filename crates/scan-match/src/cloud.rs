@@ -97,6 +97,11 @@ impl ScanPointCloud {
         Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
     }
 
+    /// Its points, at most one per degree, in m.
+    pub fn points(&self) -> &[Vector2<f64>] {
+        &self.points
+    }
+
     /// Number of its points on straight surfaces.
     pub fn n_surface_points(&self) -> usize {
         self.surfaces.len()

@@ -14,7 +14,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// An operating-system error.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: cannot be read or written", path.display())]
     Io {
         /// Path of the file.
         path: PathBuf,
@@ -22,7 +22,7 @@ pub enum LogError {
         source: io::Error,
     },
     /// A file cannot be created.
-    #[error("{}: cannot be written: {source}", path.display())]
+    #[error("{}: cannot be written", path.display())]
     NotCreated {
         /// The file.
         path: PathBuf,

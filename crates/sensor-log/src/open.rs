@@ -1,3 +1,4 @@
+use std::io;
 use std::path::{Path, PathBuf};
 
 use wayfix_estimation_traits::Pose2;
@@ -127,6 +128,10 @@ fn open_files(
     // A folder with one file is that file.
     let path = if let [file] = files.as_slice() { file.clone() } else { source.into() };
     let path = path.as_path();
+    if !(path.is_file() || path.is_dir()) && path.exists() {
+        let twice = "a pipe is read only once, a log more often: write it to a file";
+        return Err(LogError::io(path, io::Error::new(io::ErrorKind::Unsupported, twice)));
+    }
     if format != LogFormat::Mcap && !options.topics.is_empty() {
         return Err(LogError::NoTopics { path: path.into(), format });
     }

@@ -1,10 +1,14 @@
 //! An observer ends a drive.
 
+use std::{ops::ControlFlow, time::Duration};
+
+use wayfix_condensation::RgbImage;
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp};
 use wayfix_systems::{
     lines::LineExtractionSystem,
     system::{RunStep, drive},
+    views::{DescriptorKind, LightNormalization, ViewSystem, ViewSystemConfig, ViewsParams, ViewsRun},
 };
 
 #[test]
@@ -17,4 +21,24 @@ fn an_observer_ends_the_drive() {
     let mut system = LineExtractionSystem::new(LineExtractionParams::default()).expect("the defaults");
     drive(&mut system, &records, |RunStep { record, stop, .. }| stop.set(record.stamp.nanoseconds() == 20));
     assert_eq!(system.n_scans(), 21);
+}
+
+#[test]
+fn drives_through_a_scene_end_with_those_under_way() {
+    let waves = |i: usize| [i % 251, i * i % 241, i / 160 % 239].map(|value| value as u8);
+    let scene = RgbImage::from_raw(160, 120, (0..160 * 120).flat_map(waves).collect()).expect("a picture");
+    let config = ViewSystemConfig {
+        view: 64,
+        step: 16,
+        feature: DescriptorKind::MeanVar,
+        normalization: LightNormalization::None,
+    };
+    let system = ViewSystem::learn(&scene, &scene, &config, &ViewsParams::default()).expect("a scene");
+    let n_trials = |flow: ControlFlow<()>| {
+        let run = ViewsRun::drive(system.clone(), Duration::ZERO, 500, 1, &|| flow).expect("a run");
+        assert!(run.trials.is_sorted_by_key(|trial| trial.index));
+        run.trials.len()
+    };
+    assert!((1..500).contains(&n_trials(ControlFlow::Break(()))));
+    assert_eq!(n_trials(ControlFlow::Continue(())), 500);
 }

@@ -3,11 +3,11 @@
 
 use std::path::PathBuf;
 
-use wayfix_sensor_log::{LogOpenOptions, Record};
+use wayfix_sensor_log::{LaserScan, LogOpenOptions, Record, RecordData};
 use wayfix_systems::{
     points::SavedPointMap,
     slam::{AssociationRule, SavedMapError},
-    walls::{SavedWallMap, WallSlamParams, run, run_on},
+    walls::{SavedWallMap, WallSlamParams, run, run_on, run_streamed},
 };
 
 /// The office floor, up to a stamp that both halves of a run have in common.
@@ -32,9 +32,24 @@ fn a_resumed_run_goes_on_bit_for_bit() {
     for end in ends {
         let half = SavedWallMap::from_bytes(&saved(&records[..end])).unwrap();
         assert!(half.filter.landmarks.len() > 3 && half.front_end.last_keyframe.is_some());
-        let resumed = run_on(half, &records, &params, None, |_| {}).unwrap();
+        let resumed = run_on(half, &records, &records, &params, None, |_| {}).unwrap();
         assert_eq!(resumed.system.save().to_bytes().unwrap(), saved(&records), "{end}");
     }
+}
+
+#[test]
+fn a_streamed_run_is_that_of_the_kept_log_bit_for_bit() {
+    let records = office(600);
+    let without_ranges = |record: &Record| match &record.data {
+        RecordData::Scan(scan) => {
+            let data = RecordData::Scan(LaserScan { ranges: Vec::new(), ..scan.clone() });
+            Record { data, ..record.clone() }
+        }
+        _ => record.clone(),
+    };
+    let overview: Vec<Record> = records.iter().map(without_ranges).collect();
+    let streamed = run_streamed(&overview, records.clone(), &WallSlamParams::default(), |_| {}).unwrap();
+    assert_eq!(streamed.system.save().to_bytes().unwrap(), saved(&records));
 }
 
 #[test]
@@ -45,7 +60,7 @@ fn maps_of_points_and_other_rules_are_refused() {
     assert!(error.contains("planar pose with heading drift"), "{error}");
     let saved = SavedWallMap::from_bytes(&bytes).unwrap();
     let asked = Some(AssociationRule::Nn);
-    let error = run_on(saved, &records, &WallSlamParams::default(), asked, |_| {}).err().unwrap();
+    let error = run_on(saved, &records, &records, &WallSlamParams::default(), asked, |_| {}).err().unwrap();
     assert!(matches!(error.downcast_ref(), Some(SavedMapError::Kind { what: "association", .. })), "{error}");
 }
 
@@ -60,7 +75,8 @@ fn a_forged_state_never_panics() {
         let checksum = crc32fast::hash(&[&forged[8..20], &forged[24..]].concat());
         forged[20..24].copy_from_slice(&checksum.to_le_bytes());
         let map = SavedWallMap::from_bytes(&forged).map_err(anyhow::Error::from);
-        let resumed = map.and_then(|map| run_on(map, &later, &WallSlamParams::default(), None, |_| {}));
+        let resumed =
+            map.and_then(|map| run_on(map, &later, &later, &WallSlamParams::default(), None, |_| {}));
         n_refused += usize::from(resumed.is_err());
     }
     assert!(n_refused > 0, "some forgeries must be found");

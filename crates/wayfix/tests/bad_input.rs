@@ -220,7 +220,8 @@ fn a_wrong_command_line_ends_with_2_and_lists_what_is_right() {
     for (arguments, what_is_right) in [
         (["--association", "icp"], "[possible values: known, nn, jcbb]"),
         (["--profile", "submarine"], "[possible values: generic, range-bearing, victoria-park, utias]"),
-        (["--format", "rosbag"], "the formats are utias, range-bearing, tum, mcap"),
+        (["--format", "rosbag"], "[possible values: utias, range-bearing, tum, mcap"),
+        (["--format", "carmn"], "a similar value exists: 'carmen'"),
         (["--robot", "two"], "--robot <N>"),
     ] {
         let outcome = run_slam(&log, &arguments);

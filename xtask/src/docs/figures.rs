@@ -38,7 +38,8 @@ pub(super) fn read(report: &Path) -> Result<Value> {
     Ok(serde_json::from_str(&text)?)
 }
 
-fn pages(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
+/// The pages in a folder, in the order of their names.
+pub(super) fn pages(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
     let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
     let mut pages: Vec<_> = entries.into_iter().map(|entry| entry.path()).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));

@@ -4,6 +4,7 @@ mod book;
 mod figures;
 mod katex;
 mod page;
+mod transcripts;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -20,6 +21,11 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
         && flag == "--figures"
     {
         return figures::run(report);
+    }
+    if let [flag, rest @ ..] = args
+        && flag == "--transcripts"
+    {
+        return transcripts::run(rest);
     }
     if let [flag, report @ ..] = args
         && flag == "--papers"

@@ -18,9 +18,16 @@ pub const LONGEST_GAP: f64 = 0.5;
 impl ReferencePath {
     /// The true poses among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
+        Self::from_poses(records, |data| match data {
+            RecordData::TruePose(pose) => Some(pose),
+            _ => None,
+        })
+    }
+
+    fn from_poses(records: &[Record], pose_of: impl Fn(&RecordData) -> Option<&Pose2<f64>>) -> Self {
         let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
         for record in records {
-            if let RecordData::TruePose(pose) = &record.data {
+            if let Some(pose) = pose_of(&record.data) {
                 let later = poses.last().is_none_or(|(last, _)| *last < record.stamp);
                 if later && pose.is_finite() {
                     poses.push((record.stamp, *pose));
@@ -37,13 +44,10 @@ impl ReferencePath {
         if !truth.poses.is_empty() {
             return truth;
         }
-        let as_truth = |record: &Record| match record.data {
-            RecordData::EstimatedPose(pose) => {
-                Record { stamp: record.stamp, data: RecordData::TruePose(pose) }
-            }
-            _ => record.clone(),
-        };
-        let track = Self::from_records(&records.iter().map(as_truth).collect::<Vec<_>>());
+        let track = Self::from_poses(records, |data| match data {
+            RecordData::EstimatedPose(pose) => Some(pose),
+            _ => None,
+        });
         Self { is_estimate: !track.poses.is_empty(), ..track }
     }
 

@@ -27,7 +27,7 @@ pub struct CovarianceEllipsesPlot {
     pub x_label: String,
     /// Size of the ellipses, in standard deviations.
     pub sigmas: f64,
-    /// Heading and ellipses of each panel; a name has the same ink in every panel.
+    /// Heading and ellipses of each panel; a name has the same ink in every panel, and the name of a colour that colour.
     pub groups: Vec<(String, Vec<NamedEllipse>)>,
 }
 
@@ -57,10 +57,9 @@ impl CovarianceEllipsesPlot {
         let y = Axis::covering(all.iter().map(|point| point.1), AxisScale::Linear, 0.04);
         let Some((x, y)) = x.zip(y) else { return no_data(&self.title) };
         let names = self.names();
-        let legend = names
-            .iter()
-            .enumerate()
-            .fold(Legend::default(), |legend, (k, name)| legend.with(Mark::Line(Ink::of_series(k)), *name));
+        let legend = names.iter().enumerate().fold(Legend::default(), |legend, (k, name)| {
+            legend.with(Mark::Line(Ink::of_name(name, k)), *name)
+        });
         let headings: Vec<&str> = self.groups.iter().map(|(heading, _)| heading.as_str()).collect();
         let alt = format!("{}: ellipses of {} for {}", self.title, names.join(", "), headings.join("; "));
         let plate = |heading: &&str| Plate { heading: (*heading).to_owned(), x, y, height: PANEL_HEIGHT };
@@ -68,7 +67,7 @@ impl CovarianceEllipsesPlot {
         Frame { title: &self.title, alt, legend, x_label: &self.x_label }.draw(&plates, |k, panel| {
             self.groups[k].1.iter().try_for_each(|ellipse| {
                 let ink = names.iter().position(|name| *name == ellipse.name).unwrap_or(0);
-                panel.outline(&outline(ellipse), Ink::of_series(ink))
+                panel.outline(&outline(ellipse), Ink::of_name(&ellipse.name, ink))
             })
         })
     }

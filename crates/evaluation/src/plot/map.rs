@@ -37,7 +37,9 @@ pub struct MapPlot {
     pub surroundings: Vec<Vec<(f64, f64)>>,
     /// Extracted walls.
     pub walls: Vec<Vec<(f64, f64)>>,
-    /// Echoes of a laser.
+    /// Outlines of the 2σ bands of walls.
+    pub bands: Vec<Vec<(f64, f64)>>,
+    /// Echoes of a laser; one dot a pixel is drawn.
     pub echoes: Vec<(f64, f64)>,
     /// Positions of a map's reference views, m.
     pub references: Vec<(f64, f64)>,
@@ -76,7 +78,8 @@ impl MapPlot {
 
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
         self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
-        self.echoes.iter().try_for_each(|echo| panel.dot(*echo, 1.2, Ink::ESTIMATE, 1.0))?;
+        panel.dots(&self.echoes, 0.8, Ink::ECHO, 0.9)?;
+        self.bands.iter().try_for_each(|band| panel.outline(band, Ink::LANDMARK))?;
         self.references.iter().try_for_each(|place| panel.dot(*place, 1.8, Ink::LANDMARK, 1.0))?;
         self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.6))?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
@@ -98,7 +101,8 @@ impl MapPlot {
             .with_if(!self.dead_reckoning.is_empty(), Mark::Line(Ink::DEAD_RECKONING), "dead reckoning")
             .with_if(!self.landmarks.is_empty(), Mark::Dot(Ink::LANDMARK), "landmark, 2σ")
             .with_if(!self.walls.is_empty(), Mark::Line(Ink::LANDMARK), "wall")
-            .with_if(!self.echoes.is_empty(), Mark::Dot(Ink::ESTIMATE), "echo")
+            .with_if(!self.bands.is_empty(), Mark::Band(Ink::LANDMARK), "2σ of a wall")
+            .with_if(!self.echoes.is_empty(), Mark::Dot(Ink::ECHO), "scan point")
             .with_if(!self.references.is_empty(), Mark::Dot(Ink::LANDMARK), "reference view")
             .with_if(!self.true_landmarks.is_empty(), Mark::Cross(Ink::Text), "true landmark")
     }

@@ -27,6 +27,7 @@ mod picture;
 pub mod statistics;
 mod svg;
 mod times;
+mod wall_band;
 
 pub use consistency::ConsistencyPlot;
 pub use decimated::Decimated;
@@ -41,4 +42,7 @@ pub use picture::SvgPlot;
 pub use svg::axis::AxisScale;
 pub(crate) use svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub(crate) use svg::markup::escape;
+pub use svg::named::named_color;
+pub(crate) use svg::named::named_palette;
 pub use times::StepTimesPlot;
+pub use wall_band::wall_band;

@@ -1,6 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
+use super::svg::named::named_palette;
 
 /// A drawn plot: an inline `<svg>` element whose colours are the CSS variables of the page around it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,9 +28,10 @@ impl SvgPlot {
     /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
     /// ```
     pub fn standalone(&self) -> String {
+        let [light, dark] = [false, true].map(named_palette);
         let style = format!(
-            "<style>svg{{{LIGHT_PALETTE};background:var(--paper)}}text{{font-family:system-ui,sans-serif}}\
-             @media (prefers-color-scheme: dark){{svg{{{DARK_PALETTE}}}}}</style>"
+            "<style>svg{{{LIGHT_PALETTE}{light};background:var(--paper)}}text{{font-family:system-ui,sans-serif}}\
+             @media (prefers-color-scheme: dark){{svg{{{DARK_PALETTE}{dark}}}}}</style>"
         );
         match self.svg.find('>') {
             Some(end) => format!("{}{style}{}", &self.svg[..=end], &self.svg[end + 1..]),

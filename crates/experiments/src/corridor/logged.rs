@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::{ops::ControlFlow, path::Path};
 
 use anyhow::Result;
 use wayfix_evaluation::report::{Metric, ReportRun};
@@ -18,7 +18,8 @@ pub(crate) fn run_logged(folder: &Path) -> Result<ReportRun> {
     let params = ViewsParams::default();
     let mut all = ReportRun { name: "corridor-log".to_owned(), ..ReportRun::default() };
     for feature in DescriptorKind::ALL {
-        let run = LoggedViews::localize(&learned, &drive, None, feature, &params)?;
+        let run =
+            LoggedViews::localize(&learned, &drive, None, feature, &params, || ControlFlow::Continue(()))?;
         let ReportRun { metrics, events, .. } = run.summarize(&params);
         let named = |metric: Metric| Metric { name: format!("{}_{}", feature.name(), metric.name), ..metric };
         all.metrics.extend(metrics.into_iter().map(named));

@@ -43,7 +43,8 @@ pub enum LogFormat {
 }
 
 impl LogFormat {
-    const ALL: [Self; 8] = [
+    /// Every format.
+    pub const ALL: [Self; 8] = [
         Self::Utias,
         Self::RangeBearing,
         Self::Tum,
@@ -55,6 +56,20 @@ impl LogFormat {
     ];
     pub(crate) const NAMES: &'static str =
         "utias, range-bearing, tum, mcap, images, victoria-park, carmen, scan-json";
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Utias => "utias",
+            Self::VictoriaPark => "victoria-park",
+            Self::RangeBearing => "range-bearing",
+            Self::Tum => "tum",
+            Self::Carmen => "carmen",
+            Self::ScanJson => "scan-json",
+            Self::Mcap => "mcap",
+            Self::Images => "images",
+        }
+    }
 
     /// Detects the format at `path`: of folders by their content, of `.mcap` by name, else by the first bytes.
     /// # Errors
@@ -129,16 +144,7 @@ pub(crate) fn shortened(text: &str) -> String {
 
 impl fmt::Display for LogFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Utias => "utias",
-            Self::VictoriaPark => "victoria-park",
-            Self::RangeBearing => "range-bearing",
-            Self::Tum => "tum",
-            Self::Carmen => "carmen",
-            Self::ScanJson => "scan-json",
-            Self::Mcap => "mcap",
-            Self::Images => "images",
-        })
+        f.write_str(self.name())
     }
 }
 
@@ -147,7 +153,7 @@ impl FromStr for LogFormat {
     fn from_str(name: &str) -> Result<Self, LogError> {
         Self::ALL
             .into_iter()
-            .find(|format| format.to_string() == name)
+            .find(|format| format.name() == name)
             .ok_or_else(|| LogError::NoSuchFormat { name: name.to_owned() })
     }
 }

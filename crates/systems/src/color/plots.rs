@@ -1,3 +1,5 @@
+use std::borrow::Borrow;
+
 use anyhow::Result;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::{LightingFilter, YuvImage};
@@ -8,7 +10,7 @@ use wayfix_evaluation::{
     errors::PoseWithTruth,
     plot::{
         FilmStrip, FilmStripFrame, LinePlot, MapPlot, NamedEllipse, PlotError, PlotSeries, PoseErrorPlot,
-        PoseErrorSample, SvgPlot,
+        PoseErrorSample, SvgPlot, named_color,
     },
 };
 
@@ -40,26 +42,32 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
     map.colors().iter().enumerate().map(ellipse).collect()
 }
 
-/// Camera frames beside their classification, spread evenly over the log. [Schulz & Fox 2004, Fig. 4]
+/// Camera frames beside their classification, spread evenly over the log of `n_images`. [Schulz & Fox 2004, Fig. 4]
 ///
 /// # Errors
 /// Returns an error if an image cannot be decoded or a picture not be drawn.
-pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<SvgPlot> {
-    let images: Vec<(f64, &EncodedImage)> = records
-        .iter()
-        .filter_map(|record| match &record.data {
-            RecordData::Image(image) => Some((run.seconds(record.stamp), image)),
-            _ => None,
-        })
-        .collect();
+pub fn film<R: Borrow<Record>>(
+    run: &mut ColorRun,
+    n_images: usize,
+    records: impl IntoIterator<Item = R>,
+    n_frames: usize,
+) -> Result<SvgPlot> {
+    let n_frames = n_frames.min(n_images);
+    let is_shown = |number: usize| (1..=n_frames).any(|k| n_images * k / (n_frames + 1) == number);
+    let images = records.into_iter().filter_map(|record| match &record.borrow().data {
+        RecordData::Image(image) => Some((run.seconds(record.borrow().stamp), image.clone())),
+        _ => None,
+    });
+    let images: Vec<(f64, EncodedImage)> =
+        images.enumerate().filter(|(number, _)| is_shown(*number)).map(|(_, image)| image).collect();
     let mut film = FilmStrip {
         title: "What the camera saw, and what it was classified as".to_owned(),
         ..FilmStrip::default()
     };
+    let paints = paints(run.system.map());
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
     // Classifies with the light at the end of the log, so early frames may look wrong.
-    for k in 0..n_frames.min(images.len()) {
-        let (seconds, image) = images[images.len() * (k + 1) / (n_frames.min(images.len()) + 1)];
+    for (seconds, image) in images {
         let decoded = image.decode_rgb()?;
         film.frame_size = (decoded.width, decoded.height);
         let yuv = YuvImage::from_rgb(
@@ -69,7 +77,8 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
             run.system.params().yuv_standard,
         )?;
         let labels = run.system.classified(&yuv).map_err(anyhow::Error::msg)?;
-        let pixels: Vec<u8> = labels.iter().flat_map(|label| paint(*label)).collect();
+        let paint = |label: &u8| paints.get(usize::from(*label)).copied().unwrap_or(BACKGROUND);
+        let pixels: Vec<u8> = labels.iter().flat_map(paint).collect();
         let caption = format!("{seconds:.1} s");
         seen.push(FilmStripFrame { image: image.to_browser_format()?, caption: caption.clone() });
         let painted = EncodedImage::png_rgb(decoded.width, decoded.height, &pixels)?;
@@ -79,19 +88,14 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<S
     Ok(film.draw()?)
 }
 
-/// Display colour of a label: the first ones as in the four-legged league, others spread over the hues.
-fn paint(label: u8) -> [u8; 3] {
-    const PAINTS: [[u8; 3]; 8] = [
-        [40, 140, 60],
-        [245, 245, 245],
-        [250, 210, 40],
-        [60, 190, 235],
-        [245, 120, 180],
-        [245, 130, 30],
-        [200, 40, 40],
-        [50, 70, 200],
-    ];
-    if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
+/// Display colour of what has no class.
+const BACKGROUND: [u8; 3] = [96, 96, 100];
+
+/// How each colour of the map looks: by its name, others by their order.
+fn paints(map: &ColorMap) -> Vec<[u8; 3]> {
+    const OTHERS: [[u8; 3]; 4] = [[40, 140, 60], [250, 210, 40], [245, 130, 30], [50, 70, 200]];
+    let paint = |(k, name): (usize, &String)| named_color(name).unwrap_or(OTHERS[k % OTHERS.len()]);
+    map.colors().iter().enumerate().map(paint).collect()
 }
 
 fn path(run: &ColorRun, samples: &[(&ColorFrameResult, PoseWithTruth)]) -> MapPlot {

@@ -1,4 +1,4 @@
-use std::sync::Arc;
+use std::{borrow::Borrow, sync::Arc};
 
 use anyhow::{Result, bail};
 use rand::RngExt;
@@ -41,22 +41,41 @@ pub fn run(
     seed: u64,
     observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
-    let Some(first_image) = records.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
+    let in_time = without_odometry_delay(records, params.odometry_delay);
+    run_streamed(records, in_time.iter(), map, bank, params, start, seed, observe)
+}
+
+/// As [`run`], with the records one by one: a long log need not be kept. `overview` is the same log, whose images may be empty; a delay of odometry was
+/// taken out of `records` already.
+///
+/// # Errors
+/// Returns the errors of [`run`].
+#[expect(clippy::too_many_arguments, reason = "those of `run`, and the records twice")]
+pub fn run_streamed<R: Borrow<Record>>(
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
+    map: Arc<ColorMap>,
+    bank: LightingFilterBank,
+    params: &ColorSystemParams,
+    start: Option<StartPose>,
+    seed: u64,
+    observe: impl FnMut(RunStep<'_, ColorSystem>),
+) -> Result<ColorRun> {
+    let Some(first_image) = overview.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
-    check_overlap(records, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
-    let truth = ReferencePath::from_records(records);
-    let known = TrueStartPose::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
+    check_overlap(overview, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
+    let truth = ReferencePath::from_records(overview);
+    let known = TrueStartPose::at(first_image.stamp, &truth, overview).filter(|_| start.is_none());
     let start = start.unwrap_or_else(|| match known {
         Some(known) => StartPose::Near(guess(&known.pose, params, seed)),
         None => StartPose::Anywhere,
     });
     let mut system = ColorSystem::new(map, bank, params.clone(), start, seed);
-    let records = &without_odometry_delay(records, params.odometry_delay);
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }
-    drive(&mut system, records.iter(), observe);
+    drive(&mut system, records, observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");

@@ -43,9 +43,8 @@ impl WallScore {
     fn add_seen(&mut self, scan: &ScanWalls, truth: &[Wall]) {
         let mut found = BTreeSet::new();
         for segment in &scan.segments {
-            let apart = |wall: &Wall| wall.distance(&segment.start).max(wall.distance(&segment.end));
-            match nearest(truth, apart).filter(|(_, apart)| *apart < SAME_WALL_M) {
-                Some((wall, _)) => {
+            match matching(segment, truth) {
+                Some(wall) => {
                     found.insert(wall);
                     self.compare(segment, &truth[wall]);
                 }
@@ -58,12 +57,30 @@ impl WallScore {
     }
 
     fn compare(&mut self, segment: &WallSegment, wall: &Wall) {
-        let exact = LineEstimate { line: wall.line(), covariance: Matrix2::zeros() };
-        let squared = segment.estimate.mahalanobis_squared(&exact).unwrap_or(f64::INFINITY);
+        let squared = squared_distance(segment, wall);
         self.n_true += 1;
         self.n_within_2_sigma += usize::from(squared <= 4.0);
         self.squared_sum += squared;
     }
+}
+
+/// The squared distances of the segments of a scan that match a true wall.
+pub(super) fn squared_distances(scan: &ScanWalls, truth: &[TrueWall]) -> Vec<f64> {
+    let Some(pose) = &scan.pose else { return Vec::new() };
+    let walls: Vec<Wall> = truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect();
+    let squared = |segment| Some(squared_distance(segment, &walls[matching(segment, &walls)?]));
+    scan.segments.iter().filter_map(squared).collect()
+}
+
+/// The true wall that a segment matches.
+fn matching(segment: &WallSegment, truth: &[Wall]) -> Option<usize> {
+    let apart = |wall: &Wall| wall.distance(&segment.start).max(wall.distance(&segment.end));
+    nearest(truth, apart).filter(|(_, apart)| *apart < SAME_WALL_M).map(|(wall, _)| wall)
+}
+
+fn squared_distance(segment: &WallSegment, wall: &Wall) -> f64 {
+    let exact = LineEstimate { line: wall.line(), covariance: Matrix2::zeros() };
+    segment.estimate.mahalanobis_squared(&exact).unwrap_or(f64::INFINITY)
 }
 
 /// Walls with enough echoes on them.

@@ -1,3 +1,5 @@
+use std::borrow::Borrow;
+
 use nalgebra::{DefaultAllocator, Vector2};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
@@ -36,7 +38,7 @@ where
     /// Passes records through the system and says what is wrong with the result.
     pub(crate) fn through(
         mut self,
-        records: &[Record],
+        records: impl IntoIterator<Item = impl Borrow<Record>>,
         observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
     ) -> Self {
         drive(&mut self.system, records, observe);

@@ -16,12 +16,19 @@ pub(super) const BELIEF: &str = "/estimate/belief";
 pub(super) const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 
 /// Shows viewers the drive that was uncertain for longest. Each move shows the scene with the current, the most probable and the goal view,
-/// and the belief over the places.
+/// and the belief over the places; without the scene unless `has_echo`.
 ///
 /// # Errors
 /// Returns an error if the drive cannot be repeated, an image cannot be encoded or a sink fails.
-pub fn draw_drive(run: &ViewsRun, real: &RgbImage, seed: u64, sinks: MessageSinks) -> Result<()> {
-    let scene = EncodedImage::jpeg(real.width(), real.height(), real.as_raw(), JPEG_QUALITY)?;
+pub fn draw_drive(
+    run: &ViewsRun,
+    real: &RgbImage,
+    seed: u64,
+    has_echo: bool,
+    sinks: MessageSinks,
+) -> Result<()> {
+    let encode = || EncodedImage::jpeg(real.width(), real.height(), real.as_raw(), JPEG_QUALITY);
+    let scene = has_echo.then(encode).transpose()?;
     let mut drawing = EstimateDrawer { writer: FoxgloveMessageWriter::into_sink(sinks), scene };
     let mut failure = None;
     run.system.trial(seed, slowest(&run.trials), |step| {
@@ -37,13 +44,16 @@ pub fn draw_drive(run: &ViewsRun, real: &RgbImage, seed: u64, sinks: MessageSink
 
 struct EstimateDrawer {
     writer: EstimateWriter,
-    scene: EncodedImage,
+    /// `None` where the scene is not written.
+    scene: Option<EncodedImage>,
 }
 
 impl EstimateDrawer {
     fn draw(&mut self, system: &ViewSystem, step: &ViewTrialStep<'_>) -> Result<()> {
         let stamp = Stamp::from_nanoseconds(step.number as u64 * NANOSECONDS_A_MOVE);
-        self.writer.record(&Record { stamp, data: RecordData::Image(self.scene.clone()) })?;
+        if let Some(scene) = &self.scene {
+            self.writer.record(&Record { stamp, data: RecordData::Image(scene.clone()) })?;
+        }
         let best = step.localizer.best().state;
         let marked = [(step.goal, GOAL), (best, BEST), (step.at, TRUTH)];
         let outlines: Vec<ImageOutline> =

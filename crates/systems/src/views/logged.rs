@@ -1,4 +1,4 @@
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::ControlFlow};
 
 use wayfix_condensation::{
     DiscreteFilter, DiscreteStateSpace, GridMove, LearnedMotion, LoggedMove, MeasurementOutcome,
@@ -34,7 +34,7 @@ pub struct LoggedViews {
     pub learned: StateDescriptorTable,
     /// Transitions and diffusion, if they were learned from logged moves.
     pub motion: Option<LearnedMotion>,
-    /// One for each frame, readable or not.
+    /// One for each frame that was reached, readable or not.
     pub views: Vec<LoggedView>,
     tolerance: usize,
     events: BTreeMap<String, u64>,
@@ -45,6 +45,7 @@ impl LoggedViews {
     ///
     /// Places are those of the learned table, each with at least one picture, else its frames in order: a route. The noise of the features is learned as
     /// [`RouteAppearanceModel`] does. Moves slip as `moves`, a logged drive with true places, did; without it as `navigator.slip` says.
+    /// `done` is called after each frame and may end the drive there.
     ///
     /// # Errors
     /// Returns [`ViewsError::Sizes`], [`ViewsError::TooManyStates`], [`ViewsError::PlacesWithoutPicture`], [`ViewsError::NoMoves`], or an error of the
@@ -55,6 +56,7 @@ impl LoggedViews {
         moves: Option<&MoveTable>,
         feature: DescriptorKind,
         params: &ViewsParams,
+        mut done: impl FnMut() -> ControlFlow<()>,
     ) -> Result<Self, ViewsError> {
         let (size, grid, features) = learn(learned, feature, params)?;
         let route = RouteAppearanceParams::default();
@@ -102,6 +104,9 @@ impl LoggedViews {
             let truth = row.and_then(|row| state(&grid, row));
             let belief = keeps_beliefs.then(|| filter.belief().to_vec());
             run.views.push(LoggedView { best: filter.best(), truth, belief });
+            if done().is_break() {
+                break;
+            }
         }
         Ok(run)
     }

@@ -62,15 +62,20 @@ fn beliefs(run: &LoggedViews) -> Result<Option<SvgPlot>> {
     Ok(Some(FilmStrip { title, rows, frame_size }.draw()?))
 }
 
-/// Shows viewers each frame with the belief over the places.
+/// Shows viewers the belief over the places at each frame, with the pictures of the log where `has_echo`.
 ///
 /// # Errors
 /// Returns an error if an image cannot be encoded or a sink fails.
-pub fn draw_logged(run: &LoggedViews, drive: &MovedFrameFolder, sinks: MessageSinks) -> Result<()> {
+pub fn draw_logged(
+    run: &LoggedViews,
+    drive: &MovedFrameFolder,
+    has_echo: bool,
+    sinks: MessageSinks,
+) -> Result<()> {
     let mut writer: EstimateWriter = FoxgloveMessageWriter::into_sink(sinks);
     for ((number, view), frame) in (0..).zip(&run.views).zip(&drive.frames) {
         let stamp = Stamp::from_nanoseconds(number * NANOSECONDS_A_MOVE);
-        if let Some(image) = &frame.image {
+        if let Some(image) = frame.image.as_ref().filter(|_| has_echo) {
             writer.record(&Record { stamp, data: RecordData::Image(image.clone()) })?;
         }
         if let Some(belief) = &view.belief {

@@ -120,8 +120,8 @@ pub fn shade(share: f64) -> [u8; 3] {
 /// The trial that became certain last; one that never did is the slowest.
 pub(super) fn slowest(trials: &[ViewTrial]) -> u64 {
     let steps = |trial: &ViewTrial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
-    let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
-    slowest.map_or(0, |(index, _)| index)
+    let slowest = trials.iter().max_by_key(|trial| (steps(trial), Reverse(trial.index)));
+    slowest.map_or(0, |trial| trial.index)
 }
 
 fn scenes(learned: &RgbImage, real: &RgbImage) -> Result<SvgPlot> {

@@ -1,4 +1,8 @@
-use std::time::Duration;
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
 
 use rayon::prelude::*;
 use wayfix_condensation::RgbImage;
@@ -11,7 +15,7 @@ use crate::system::Stopwatch;
 pub struct ViewsRun {
     /// The learned and the real scene.
     pub system: ViewSystem,
-    /// The trials, in order.
+    /// The trials that were made, in order.
     pub trials: Vec<ViewTrial>,
     /// Duration of learning.
     pub learning: Duration,
@@ -36,11 +40,16 @@ pub fn run(
 ) -> Result<ViewsRun, ViewsError> {
     let stopwatch = Stopwatch::start();
     let system = ViewSystem::learn(learned, real, setup, params)?;
-    ViewsRun::drive(system, stopwatch.elapsed(), n_trials, seed, done)
+    let on = || {
+        done();
+        ControlFlow::Continue(())
+    };
+    ViewsRun::drive(system, stopwatch.elapsed(), n_trials, seed, &on)
 }
 
 impl ViewsRun {
-    /// Drives `n_trials` times, in parallel; calls `done` after each drive. `learning` is the time that learning took.
+    /// Drives `n_trials` times, in parallel; calls `done` after each drive, which may end the run after the drives
+    /// under way. `learning` is the time that learning took.
     ///
     /// # Errors
     /// Returns [`ViewsError::Condensation`].
@@ -49,15 +58,21 @@ impl ViewsRun {
         learning: Duration,
         n_trials: u64,
         seed: u64,
-        done: &(impl Fn() + Sync),
+        done: &(impl Fn() -> ControlFlow<()> + Sync),
     ) -> Result<Self, ViewsError> {
         let stopwatch = Stopwatch::start();
+        let has_ended = AtomicBool::new(false);
         let trial = |index: u64| {
+            if has_ended.load(Ordering::Relaxed) {
+                return None;
+            }
             let trial = system.trial(seed, index, |_| {});
-            done();
-            trial
+            if done().is_break() {
+                has_ended.store(true, Ordering::Relaxed);
+            }
+            Some(trial)
         };
-        let trials = (0..n_trials).into_par_iter().map(trial).collect::<Result<Vec<_>, _>>()?;
+        let trials = (0..n_trials).into_par_iter().filter_map(trial).collect::<Result<Vec<_>, _>>()?;
         Ok(Self { system, trials, learning, driving: stopwatch.elapsed() })
     }
 }

@@ -46,6 +46,8 @@ pub struct ViewSystem {
 /// One drive from a random place to a random goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewTrial {
+    /// Number of the drive.
+    pub index: u64,
     /// First place.
     pub start: usize,
     /// Goal place.
@@ -177,7 +179,7 @@ impl ViewSystem {
             watch(ViewTrialStep { number, at: at.get(), goal, localizer });
         };
         let report = self.navigator.run(goal, &mut localizer, &mut drive, &mut observe, &mut rng)?;
-        Ok(ViewTrial { start, goal, end: at.get(), report, belief_in_truth })
+        Ok(ViewTrial { index, start, goal, end: at.get(), report, belief_in_truth })
     }
 }
 

@@ -15,6 +15,7 @@ use super::{
     odometry::{Motion, OdometryBetweenScans},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
+    scan_sample::ScanSample,
 };
 use crate::{
     slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
@@ -49,6 +50,8 @@ pub struct WallSlamFrontEnd {
     laser_heading: Option<f64>,
     /// By how much the robot has turned to each estimate from the one before, by the scans alone, rad.
     seen_turns: Vec<Option<f64>>,
+    /// Points for the picture of the map.
+    pub(super) scan_sample: ScanSample,
 }
 
 impl WallSystem {
@@ -90,6 +93,7 @@ impl WallSystem {
             waiting: VecDeque::new(),
             laser_heading: None,
             seen_turns: Vec::new(),
+            scan_sample: ScanSample::default(),
         };
         Ok(Self::new(front_end, estimator))
     }
@@ -286,15 +290,17 @@ impl WallSlamFrontEnd {
                 let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
                 self.predict_to_scan(estimator)?;
                 let observations = self.walls_among(&found.segments, &scan.laser, estimator);
-                self.last_keyframe = Some(KeyframeScan { scan, cloud });
+                let keyframe = self.last_keyframe.insert(KeyframeScan { scan, cloud });
                 self.laser_heading = Some(0.0);
-                nis(&estimator.update(&observations, |wall| {
+                let report = estimator.update(&observations, |wall| {
                     format!(
                         "a wall with the ends {:?}, {:?}, m",
                         wall.ends[0].as_slice(),
                         wall.ends[1].as_slice()
                     )
-                })?)
+                })?;
+                self.scan_sample.offer(&keyframe.cloud, &estimator.filter.robot().pose);
+                nis(&report)
             };
         estimator.step += stopwatch.elapsed();
         self.add_stamped_estimate(stamp, corrected, estimator);

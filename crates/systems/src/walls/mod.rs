@@ -10,6 +10,7 @@ mod plots;
 mod relative_motion;
 mod run;
 mod scan;
+mod scan_sample;
 mod state;
 mod truth;
 
@@ -19,5 +20,5 @@ pub use odometry::OdometryBetweenScans;
 pub use params::{KeyframeThreshold, OdometryNoisePerScan, WallSlamParams};
 pub use plots::plots;
 pub use relative_motion::RelativeMotion;
-pub use run::{WallRun, run, run_on};
+pub use run::{WallRun, run, run_on, run_streamed};
 pub use state::{SavedScan, SavedWallMap, WallFrontEndState};

@@ -1,19 +1,27 @@
 use nalgebra::Vector2;
-use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
+use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot, wall_band};
+
+use wayfix_slam_ekf::{LandmarkEstimate, Wall};
 
 use super::WallRun;
 use crate::slam::plots_with;
 
-/// Path and walls, errors with their 3σ bands and NEES where there is truth, and step times. [Andrade-Cetto 2005, Fig. 7]
+/// Path and walls with their 2σ bands and points of the scans, errors with their 3σ bands and NEES where there is truth, and step times. [Andrade-Cetto 2005, Fig. 7]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
 pub fn plots(run: &WallRun) -> Result<Vec<SvgPlot>, PlotError> {
     let point = |position: Vector2<f64>| (position.x, position.y);
-    let walls = run.system.filter().landmarks();
+    let band = |wall: &LandmarkEstimate<Wall>| {
+        let covariance = wall.covariance.transpose().into();
+        wall_band(wall.mean.ends().map(point), wall.mean.stretch, covariance)
+    };
+    let walls: Vec<_> = run.system.filter().landmarks().collect();
     let map = MapPlot {
-        title: "Path and walls".to_owned(),
-        walls: walls.map(|wall| wall.mean.ends().map(point).to_vec()).collect(),
+        title: "Path, walls with their 2σ bands, and points of up to 256 scans".to_owned(),
+        bands: walls.iter().map(band).collect(),
+        walls: walls.iter().map(|wall| wall.mean.ends().map(point).to_vec()).collect(),
+        echoes: run.system.front_end.scan_sample.points(),
         surroundings: run.true_map.iter().map(|wall| vec![point(wall.start), point(wall.end)]).collect(),
         ..MapPlot::default()
     };

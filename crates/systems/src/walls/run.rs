@@ -1,3 +1,5 @@
+use std::borrow::Borrow;
+
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
@@ -27,7 +29,22 @@ pub fn run(
     params: &WallSlamParams,
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
-    let first = |is: fn(&RecordData) -> bool| records.iter().find(|record| is(&record.data));
+    let in_time = without_odometry_delay(records, params.odometry_delay);
+    run_streamed(records, in_time.iter(), params, observe)
+}
+
+/// As [`run`], with the records one by one: a long log need not be kept. `overview` is the same log, whose scans may be without ranges; a delay of
+/// odometry was taken out of `records` already.
+///
+/// # Errors
+/// Returns the errors of [`run`].
+pub fn run_streamed<R: Borrow<Record>>(
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
+    params: &WallSlamParams,
+    observe: impl FnMut(RunStep<'_, WallSystem>),
+) -> Result<WallRun> {
+    let first = |is: fn(&RecordData) -> bool| overview.iter().find(|record| is(&record.data));
     let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
     };
@@ -38,18 +55,18 @@ pub fn run(
             "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
-    check_overlap(records, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
-    let track = ReferencePath::from_records_or_estimates(records);
-    let known = TrueStartPose::at(scan.stamp, &track, records).filter(|_| params.start_pose.is_none());
+    check_overlap(overview, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
+    let track = ReferencePath::from_records_or_estimates(overview);
+    let known = TrueStartPose::at(scan.stamp, &track, overview).filter(|_| params.start_pose.is_none());
     let start = start_pose(params.start_pose, known);
-    let laser = params.laser_pose.or_else(|| laser_mount(records));
+    let laser = params.laser_pose.or_else(|| laser_mount(overview));
     let placed = WallSlamParams { laser_pose: laser, ..params.clone() };
     let mut system = WallSystem::with_walls(placed, start, track.noise(), moves_by_velocity)?;
     system.front_end.laser_follows_log = params.laser_pose.is_none();
     if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &track);
     }
-    let true_walls = truth::true_walls(records);
+    let true_walls = truth::true_walls(overview);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
         system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
@@ -58,41 +75,42 @@ pub fn run(
         truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
     };
     system.add_given_anchors(&params.anchors, None, between)?;
-    drive_through(system, track, true_walls, records, observe)
+    drive_through(system, track, true_walls, overview, records, observe)
 }
 
 /// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `association` is the rule
-/// that was asked for, if any.
+/// that was asked for, if any; `overview` and `records` are as in [`run_streamed`].
 ///
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
 ///
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
-pub fn run_on(
+pub fn run_on<R: Borrow<Record>>(
     saved: SavedWallMap,
-    records: &[Record],
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
     params: &WallSlamParams,
     association: Option<AssociationRule>,
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
-    let track = ReferencePath::from_records_or_estimates(records);
-    drive_through(system, track, truth::true_walls(records), records, observe)
+    let track = ReferencePath::from_records_or_estimates(overview);
+    drive_through(system, track, truth::true_walls(overview), overview, records, observe)
 }
 
-fn drive_through(
+fn drive_through<R: Borrow<Record>>(
     system: WallSystem,
     truth: ReferencePath,
     true_map: Vec<TrueWall>,
-    records: &[Record],
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let delay = system.front_end.params.odometry_delay;
-    let records = without_odometry_delay(records, delay);
-    let true_positions = TruePositions::from_records(&records);
+    let true_positions = TruePositions::from_records(overview);
     let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
     let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
-        .through(&records, observe);
+        .through(records, observe);
     let stamped_estimates = run.system.stamped_estimates();
     if stamped_estimates.is_empty() {
         let n_before = run.events().get("record_before_resume");

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
-use super::input::Topics;
+use super::input::{Topics, log_format};
 
 /// Write a log in another format.
 ///
@@ -19,11 +19,11 @@ pub(super) struct Arguments {
     input: PathBuf,
     /// The file to write: .mcap, .txt (range-bearing lines) or .tum (poses).
     output: PathBuf,
-    /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
-    #[arg(long, value_name = "FORMAT")]
+    /// Input format [default: detected from the content].
+    #[arg(long, value_name = "FORMAT", value_parser = log_format())]
     from: Option<LogFormat>,
     /// Output format: mcap, range-bearing or tum [default: from the file extension].
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = log_format(), hide_possible_values = true)]
     to: Option<LogFormat>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]

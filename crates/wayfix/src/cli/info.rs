@@ -4,7 +4,7 @@ use anyhow::Result;
 use wayfix_evaluation::terminal::print;
 use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogSummary};
 
-use super::input::Topics;
+use super::input::{Topics, log_format};
 
 /// Show the content of a log: kinds of records with their rates, landmarks, robots, and read problems.
 #[derive(clap::Args)]
@@ -12,8 +12,8 @@ use super::input::Topics;
 pub(super) struct Arguments {
     /// The log: a file, or the folder of a UTIAS set, of Victoria Park or of images.
     path: PathBuf,
-    /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
-    #[arg(long)]
+    /// Input format [default: detected from the content].
+    #[arg(long, value_parser = log_format())]
     format: Option<LogFormat>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]

@@ -1,9 +1,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::read_text;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use wayfix_sensor_log::{LogFormat, read_text};
 
 use super::renamed::{present_name, replacement};
+
+/// A format of a log by its name; a mistyped one is told the most similar.
+pub(super) fn log_format() -> impl TypedValueParser<Value = LogFormat> {
+    PossibleValuesParser::new(LogFormat::ALL.map(LogFormat::name)).try_map(|name| name.parse::<LogFormat>())
+}
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]

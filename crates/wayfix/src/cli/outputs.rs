@@ -40,6 +40,11 @@ impl<'a> Outputs<'a> {
         Ok(Self { suite, common, live: common.live.start()?, log: None })
     }
 
+    /// Whether the records of the log are written beside the estimates.
+    pub(super) fn has_echo(&self) -> bool {
+        !self.common.no_echo
+    }
+
     /// A file in the folder, where one is wanted.
     pub(super) fn file(&self, name: &str) -> Option<PathBuf> {
         self.common.out.as_ref().map(|out| out.join(name))
@@ -66,7 +71,7 @@ impl<'a> Outputs<'a> {
             return Ok(None);
         }
         let recorder = EstimateRecorder::new(sinks, origin)?;
-        Ok(Some(if self.common.no_echo { recorder.without_echo() } else { recorder }))
+        Ok(Some(if self.has_echo() { recorder } else { recorder.without_echo() }))
     }
 
     /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.

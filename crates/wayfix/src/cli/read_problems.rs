@@ -1,4 +1,6 @@
-use wayfix_sensor_log::{Log, LogCompleteness, LogWarning, ReadReport, Record};
+use wayfix_sensor_log::{
+    EncodedImage, LaserScan, Log, LogCompleteness, LogWarning, ReadReport, Record, RecordData,
+};
 
 use super::run::interrupt;
 use wayfix_evaluation::terminal::print_message;
@@ -11,6 +13,26 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
         print_message(&read);
     }
     (records, read)
+}
+
+/// Reads all of a log but what its scans and images hold, which a long log has too much of; prints read problems and assumptions.
+pub(super) fn read_overview(log: Log) -> (Vec<Record>, ReadReport) {
+    let mut log = log;
+    let records = log.by_ref().map(without_bulk).collect();
+    let read = log.report().clone();
+    if !read.is_clean() {
+        print_message(&read);
+    }
+    (records, read)
+}
+
+fn without_bulk(record: Record) -> Record {
+    let data = match record.data {
+        RecordData::Scan(scan) => RecordData::Scan(LaserScan { ranges: Vec::new(), ..scan }),
+        RecordData::Image(image) => RecordData::Image(EncodedImage { bytes: [].into(), ..image }),
+        data => data,
+    };
+    Record { data, ..record }
 }
 
 /// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.

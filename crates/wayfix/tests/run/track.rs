@@ -272,6 +272,21 @@ fn what_is_written_reads_back() {
 }
 
 #[test]
+fn without_echo_or_mcap_less_is_written() {
+    let shot = Shot::new();
+    let written = |option: &str| {
+        let out = shot.scratch.path(option);
+        shot.run(&["--init", &shot.boxes[0], "--out", out.to_str().unwrap(), option]);
+        assert_eq!(fs::read_to_string(out.join("boxes.txt")).unwrap().lines().count(), N_FRAMES);
+        fs::read(out.join("estimates.mcap")).ok()
+    };
+    assert_eq!(written("--no-mcap"), None);
+    let estimates = written("--no-echo").expect("estimates");
+    let holds = |schema: &[u8]| estimates.windows(schema.len()).any(|bytes| bytes == schema);
+    assert!(holds(b"foxglove.ImageAnnotations") && !holds(b"foxglove.CompressedImage"));
+}
+
+#[test]
 fn parameters_print_and_read_back_and_a_wrong_key_is_named() {
     let shot = Shot::new();
     let printed = wayfix(["run", "track", "--print-params"]);

@@ -144,6 +144,18 @@ fn out_holds_the_page_the_report_the_pictures_and_a_drive() {
 }
 
 #[test]
+fn without_echo_the_scene_is_not_in_the_estimates() {
+    let scratch = Scratch::new();
+    let scene = scratch.file("scene.png", png(painting()));
+    let size = |option: &[&str]| {
+        let out = scratch.path("out");
+        run_views(&scene, &[&["--out", out.to_str().expect("a plain path")], option].concat());
+        fs::metadata(out.join("estimates.mcap")).expect("estimates").len()
+    };
+    assert!(size(&["--no-echo"]) < size(&[]));
+}
+
+#[test]
 fn printed_parameters_round_trip() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));

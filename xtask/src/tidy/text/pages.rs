@@ -39,11 +39,12 @@ fn too_long(path: &str, n: usize) -> Option<Finding> {
         .then(|| Finding::new(path, 0, what, "a guide tells what is; what was tried is a record (docs/adr)"))
 }
 
-/// Tables that are generated, or that only list names: they are looked up, not read, and the limits are for what is read.
-const NOT_COUNTED: [(&str, &str); 3] = [
+/// Tables and recordings that are generated, or that only list names: they are looked up, not read, and the limits are for what is read.
+const NOT_COUNTED: [(&str, &str); 4] = [
     ("<!-- figures: ", "<!-- end figures -->"),
     ("<!-- names -->", "<!-- end names -->"),
     ("<!-- papers -->", "<!-- end papers -->"),
+    ("<!-- transcript -->", "<!-- end transcript -->"),
 ];
 
 /// Words, without tables of figures and of names.

@@ -1,5 +1,7 @@
 use plotters::style::{Color, RGBAColor, RGBColor};
 
+use super::named;
+
 /// Custom properties of a light page.
 pub(crate) const LIGHT_PALETTE: &str = "--paper:#fdfdfb;--text:#1c1e21;--muted:#62676e;--grid:#e4e5e2;\
     --ink-0:#1765ad;--ink-1:#c2600b;--ink-2:#1b7f4d;--ink-3:#a3297a;--ink-4:#7a5c00;--ink-5:#5b4bc4";
@@ -20,6 +22,8 @@ pub(in crate::plot) enum Ink {
     Data(u8),
     /// The same, dashed.
     Dashed(u8),
+    /// One of the colours that have a name.
+    Named(u8),
 }
 
 impl Ink {
@@ -27,10 +31,16 @@ impl Ink {
     pub(in crate::plot) const ESTIMATE: Self = Self::Data(0);
     pub(in crate::plot) const DEAD_RECKONING: Self = Self::Dashed(1);
     pub(in crate::plot) const LANDMARK: Self = Self::Data(3);
+    pub(in crate::plot) const ECHO: Self = Self::Data(2);
 
     /// The colour of series number `index`.
     pub(in crate::plot) fn of_series(index: usize) -> Self {
         Self::Data((index % usize::from(N_DATA_INKS)) as u8)
+    }
+
+    /// The colour called `name`, or the colour of series number `index`.
+    pub(in crate::plot) fn of_name(name: &str, index: usize) -> Self {
+        named::index_of(name).map_or_else(|| Self::of_series(index), Self::Named)
     }
 
     /// A placeholder colour for this ink in the output of the SVG backend; [`Ink::replace_markers`] removes it.
@@ -44,7 +54,8 @@ impl Ink {
         let all = [Self::Text, Self::Muted, Self::Grid]
             .into_iter()
             .chain((0..N_DATA_INKS).map(Self::Data))
-            .chain(dashed);
+            .chain(dashed)
+            .chain((0..named::N_NAMED).map(Self::Named));
         all.fold(svg.to_owned(), |svg, ink| {
             svg.replace(&format!("\"#F00D{:02X}\"", ink.code()), &ink.attribute())
         })
@@ -57,6 +68,7 @@ impl Ink {
             Self::Grid => 0x82,
             Self::Data(index) => index % N_DATA_INKS,
             Self::Dashed(index) => 0x10 + index % N_DATA_INKS,
+            Self::Named(index) => 0x20 + index % named::N_NAMED,
         }
     }
 
@@ -68,6 +80,7 @@ impl Ink {
             Self::Grid => "\"var(--grid)\"".to_owned(),
             Self::Data(index) => format!("\"var(--ink-{index})\""),
             Self::Dashed(index) => format!("\"var(--ink-{index})\" stroke-dasharray=\"50 35\""),
+            Self::Named(index) => named::attribute(index),
         }
     }
 }

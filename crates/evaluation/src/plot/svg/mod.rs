@@ -8,4 +8,5 @@ pub(super) mod ink;
 pub(super) mod layout;
 pub(super) mod legend;
 pub(super) mod markup;
+pub(super) mod named;
 pub(super) mod panel;

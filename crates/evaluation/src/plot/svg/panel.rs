@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use super::super::PlotError;
 use super::axis::Axis;
 use super::canvas::{Anchor, Brush};
@@ -113,6 +115,19 @@ impl<'a, 'b> Panel<'a, 'b> {
         opacity: f64,
     ) -> Result<(), PlotError> {
         self.visible(at).map_or(Ok(()), |pixel| self.brush.dot(pixel, radius, ink, opacity))
+    }
+
+    /// Many small discs, one a pixel.
+    pub(in crate::plot) fn dots(
+        &self,
+        points: &[(f64, f64)],
+        radius: f64,
+        ink: Ink,
+        opacity: f64,
+    ) -> Result<(), PlotError> {
+        let pixels = points.iter().filter_map(|point| self.visible(*point));
+        let pixels: BTreeSet<_> = pixels.map(|(x, y)| (x.round() as i64, y.round() as i64)).collect();
+        pixels.iter().try_for_each(|(x, y)| self.brush.dot((*x as f64, *y as f64), radius, ink, opacity))
     }
 
     /// A small cross.

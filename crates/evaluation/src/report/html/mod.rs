@@ -4,7 +4,7 @@ mod overview;
 mod run;
 
 use super::{FullReport, ReportSuite};
-use crate::plot::{DARK_PALETTE, LIGHT_PALETTE, escape};
+use crate::plot::{DARK_PALETTE, LIGHT_PALETTE, escape, named_palette};
 
 /// The page.
 ///
@@ -19,9 +19,11 @@ pub fn render(report: &FullReport) -> String {
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>Wayfix report</title>\n\
-         <style>\n:root{{{LIGHT_PALETTE};{LIGHT_VERDICTS}}}\n@media (prefers-color-scheme: dark){{:root{{{DARK_PALETTE};{DARK_VERDICTS}}}}}\n\
+         <style>\n:root{{{LIGHT_PALETTE}{light};{LIGHT_VERDICTS}}}\n@media (prefers-color-scheme: dark){{:root{{{DARK_PALETTE}{dark};{DARK_VERDICTS}}}}}\n\
          {STYLE}</style>\n</head>\n<body>\n{header}<main>\n{body}</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
         header = overview::header(report),
+        light = named_palette(false),
+        dark = named_palette(true),
     )
 }
 

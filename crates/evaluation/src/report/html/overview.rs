@@ -71,6 +71,7 @@ fn found(report: &FullReport) -> String {
     let n_figures: usize = report.runs().map(|(_, run)| run.all_metrics().count()).sum();
     match n_doubts {
         0 => format!("{n_figures} figures, no warnings"),
+        1 => format!("{n_figures} figures; a warning says what is doubtful"),
         n => format!("{n_figures} figures; {n} warnings say what is doubtful"),
     }
 }
@@ -92,8 +93,12 @@ fn open(report: &FullReport) -> String {
     }
 }
 
+/// A row a run; a single run without bounds needs none.
 fn contents(report: &FullReport) -> String {
     let is_judged = report.tally() != PassFailCount::default();
+    if !is_judged && report.runs().count() < 2 {
+        return String::new();
+    }
     let row = |(k, n, suite, run): (usize, usize, &ReportSuite, &ReportRun)| {
         let PassFailCount { passed, failed } = run.tally();
         let class = if failed > 0 { " class=\"failed\"" } else { "" };

@@ -59,7 +59,8 @@ fn metrics(run: &ReportRun) -> String {
 
 fn metric_row(metric: &Metric, compared: bool) -> String {
     let class = if metric.passes() { "" } else { " class=\"failed\"" };
-    let title = explanation(&metric.name).map(|meaning| format!(" title=\"{}\"", escape(meaning)));
+    let title =
+        explanation(&metric.name).map(|meaning| format!(" tabindex=\"0\" title=\"{}\"", escape(meaning)));
     format!(
         "<tr{class}><th scope=\"row\"><code{}>{}</code></th>{}<td>{}</td>{}</tr>\n",
         title.unwrap_or_default(),

@@ -225,7 +225,7 @@ fn localize(
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::plots(&run)?;
     figures.extend(particles.draw(&run)?);
-    figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
+    figures.push(color::film(&mut run, color::n_images(&records), &records, FILM_FRAMES)?);
     Ok(ReportRun { log: Some(name), figures, ..color::summarize(&mut run) })
 }
 

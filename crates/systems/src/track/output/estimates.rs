@@ -19,6 +19,7 @@ pub struct TrackEstimateRecorder {
     writer: EstimateWriter,
     boxes: Box<dyn Write>,
     n_lines: usize,
+    has_echo: bool,
     failure: Option<anyhow::Error>,
 }
 
@@ -39,7 +40,12 @@ impl TrackEstimateRecorder {
     pub fn new(sinks: MessageSinks, boxes: Box<dyn Write>, origin: LogFormat) -> Result<Self> {
         let mut writer = FoxgloveMessageWriter::into_sink(sinks);
         writer.origin(origin)?;
-        Ok(Self { writer, boxes, n_lines: 0, failure: None })
+        Ok(Self { writer, boxes, n_lines: 0, has_echo: true, failure: None })
+    }
+
+    /// Writes the outlines only, without the images of the log.
+    pub fn without_echo(self) -> Self {
+        Self { has_echo: false, ..self }
     }
 
     /// Writes an image of the log and the tracker's outline. A failure is kept until [`finish`](Self::finish).
@@ -66,7 +72,9 @@ impl TrackEstimateRecorder {
         if !matches!(record.data, RecordData::Image(_)) {
             return Ok(());
         }
-        self.writer.record(record)?;
+        if self.has_echo {
+            self.writer.record(record)?;
+        }
         let Some(frame) = system.frame() else { return Ok(()) };
         self.writer.image_outlines(topics::TARGET, frame.stamp, &outlines(frame))?;
         self.fill_up(frame.index)?;

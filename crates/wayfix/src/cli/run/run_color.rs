@@ -1,4 +1,4 @@
-use std::{fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
+use std::{borrow::Cow, fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
 
 use anyhow::{Context, Result, ensure};
 use wayfix_estimation_traits::Pose2;
@@ -9,7 +9,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all},
+    read_problems::{add_read_problems, read_all, read_overview},
     truth::TruthFile,
 };
 use super::interrupt;
@@ -17,7 +17,7 @@ use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
     color::{self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
-    system::{RunStep, Stopwatch, System},
+    system::{RunStep, Stopwatch, System, without_odometry_delay},
 };
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
@@ -120,19 +120,31 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     );
     let bank = priors::bank(&priors, &params)?;
     let options = LogOpenOptions { topics: arguments.topics.topics, ..LogOpenOptions::default() };
-    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
+    let log = open()?;
     let origin = log.meta().first_format();
-    let (records, read) = read_all(log);
-    let records = arguments.truth.put_into(records)?;
+    // What is to be sorted is kept.
+    let is_kept = arguments.truth.truth.is_some() || params.odometry_delay != 0.0;
+    let (overview, read) = if is_kept { read_all(log) } else { read_overview(log) };
+    let overview = arguments.truth.put_into(overview)?;
+    let in_time = without_odometry_delay(&overview, params.odometry_delay);
+    let records = || -> Result<Box<dyn Iterator<Item = Cow<'_, Record>> + '_>> {
+        Ok(if is_kept {
+            Box::new(in_time.iter().map(Cow::Borrowed))
+        } else {
+            Box::new(open()?.map(Cow::Owned))
+        })
+    };
 
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut particles = ParticleSnapshots::new(color::n_images(&records));
-    let bar = terminal::bar(records.len(), "colour localization");
+    let mut particles = ParticleSnapshots::new(color::n_images(&overview));
+    let bar = terminal::bar(overview.len(), "colour localization");
     let start = arguments.start.map(|start| start.0);
-    let color = color::run(
-        &records,
+    let color = color::run_streamed(
+        &overview,
+        records()?,
         map,
         bank,
         &params,
@@ -157,16 +169,21 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    outputs.show(run, || plots(&mut color, &records, &particles))?;
+    outputs.show(run, || plots(&mut color, color::n_images(&overview), records()?, &particles))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;
 
-fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleSnapshots) -> Result<Vec<SvgPlot>> {
+fn plots<'a>(
+    color: &mut ColorRun,
+    n_images: usize,
+    records: impl Iterator<Item = Cow<'a, Record>>,
+    particles: &ParticleSnapshots,
+) -> Result<Vec<SvgPlot>> {
     let mut plots = color::plots(color)?;
     plots.extend(particles.draw(color)?);
-    plots.push(color::film(color, records, FILM_FRAMES)?);
+    plots.push(color::film(color, n_images, records, FILM_FRAMES)?);
     Ok(plots)
 }

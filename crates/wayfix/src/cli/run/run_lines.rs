@@ -7,7 +7,7 @@ use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 
 use super::super::{
     common::Common,
-    input::{Topics, name_of, read_toml},
+    input::{Topics, log_format, name_of, read_toml},
     outputs::Outputs,
     read_problems::add_read_problems,
 };
@@ -33,7 +33,7 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     log: Vec<PathBuf>,
     /// Input format: carmen, scan-json or mcap [default: detected from the content].
-    #[arg(long)]
+    #[arg(long, value_parser = log_format(), hide_possible_values = true)]
     format: Option<LogFormat>,
     #[command(flatten)]
     topics: Topics,

@@ -1,6 +1,7 @@
-use std::{path::Path, process::ExitCode, str::FromStr};
+use std::{path::Path, process::ExitCode};
 
 use anyhow::{Result, bail, ensure};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use wayfix_evaluation::{report::ReportRun, terminal::print_message};
 use wayfix_sensor_log::LogFormat;
 use wayfix_systems::{
@@ -23,19 +24,16 @@ pub(in crate::cli) enum SlamLogFormat {
     Plaza,
 }
 
-impl FromStr for SlamLogFormat {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "plaza" => Ok(Self::Plaza),
-            other => other
-                .parse()
-                .map(Self::Log)
-                .map_err(|error: <LogFormat as FromStr>::Err| format!("{error}, or plaza")),
-        }
-    }
+/// Such a format by its name; a mistyped one is told the most similar.
+pub(in crate::cli) fn slam_log_format() -> impl TypedValueParser<Value = SlamLogFormat> {
+    let names = LogFormat::ALL.map(LogFormat::name).into_iter().chain([PLAZA]);
+    PossibleValuesParser::new(names).try_map(|name| match name.as_str() {
+        PLAZA => Ok(SlamLogFormat::Plaza),
+        name => name.parse::<LogFormat>().map(SlamLogFormat::Log),
+    })
 }
+
+const PLAZA: &str = "plaza";
 
 /// The folder, if the log is one of ranges.
 pub(in crate::cli) fn folder(arguments: &run_slam::Arguments) -> Option<&Path> {

@@ -23,7 +23,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all},
+    read_problems::{add_read_problems, read_all, read_overview},
     truth::TruthFile,
 };
 use super::{
@@ -56,8 +56,8 @@ pub(in crate::cli) struct Arguments {
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(in crate::cli) log: Vec<PathBuf>,
-    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json, mcap or plaza [default: detected from the content].
-    #[arg(long)]
+    /// How the log is stored [default: detected from the content].
+    #[arg(long, value_parser = run_ranges::slam_log_format())]
     pub(in crate::cli) format: Option<SlamLogFormat>,
     /// What estimates: a filter, or least squares over all poses of a window.
     #[arg(long, value_enum, value_name = "NAME", default_value = "ekf")]
@@ -145,12 +145,15 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         topics: arguments.topics.topics.clone(),
         ..LogOpenOptions::default()
     };
-    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
+    let log = open()?;
     let meta = log.meta().clone();
-    let (records, read) = read_all(log);
+    let is_kept = arguments.truth.truth.is_some();
+    let (records, read) = if is_kept { read_all(log) } else { read_overview(log) };
     let records = arguments.truth.put_into(records)?;
     if run_walls::is_for(&records) {
-        return run_walls::main(&arguments, &records, meta.first_format(), &read);
+        let input = run_walls::Input { records, is_kept, origin: meta.first_format(), read };
+        return run_walls::main(&arguments, input, &open);
     }
     let origin = meta.first_format();
     let params = params(&arguments, RobotProfile::of_log(&meta))?;

@@ -177,15 +177,14 @@ impl Arguments {
 
 fn open_estimates(outputs: &mut Outputs<'_>, origin: LogFormat) -> Result<Option<TrackEstimateRecorder>> {
     let sinks = outputs.sinks()?;
-    if sinks.is_empty() {
-        return Ok(None);
-    }
     let boxes: Box<dyn Write> = match outputs.file(BOXES) {
         Some(path) => {
             let file = File::create(&path).with_context(|| format!("cannot create {}", path.display()))?;
             Box::new(BufWriter::new(file))
         }
+        None if sinks.is_empty() => return Ok(None),
         None => Box::new(io::sink()),
     };
-    Ok(Some(TrackEstimateRecorder::new(sinks, boxes, origin)?))
+    let recorder = TrackEstimateRecorder::new(sinks, boxes, origin)?;
+    Ok(Some(if outputs.has_echo() { recorder } else { recorder.without_echo() }))
 }

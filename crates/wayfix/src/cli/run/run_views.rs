@@ -10,6 +10,7 @@ use wayfix_condensation::{ActionSelection, LightChange, RgbImage, shifted};
 use wayfix_evaluation::terminal::{self, print, print_message};
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs};
+use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
@@ -183,16 +184,20 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let bar = terminal::bar(arguments.trials as usize, "drives");
     let (learning, seed) = (stopwatch.elapsed(), arguments.common.seed);
-    let run = ViewsRun::drive(system, learning, arguments.trials, seed, &|| bar.inc(1));
+    let run = ViewsRun::drive(system, learning, arguments.trials, seed, &|| {
+        bar.inc(1);
+        interrupt::flow()
+    });
     bar.finish_and_clear();
     let views = run?;
 
     let name = scene_path.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = ReportRun { name, seconds, ..views::summarize(&views) };
+    let warnings = interrupt::warning().into_iter().collect();
+    let run = ReportRun { name, seconds, warnings, ..views::summarize(&views) };
     let sinks = outputs.sinks()?;
     if !sinks.is_empty() {
-        views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
+        views::draw_drive(&views, &real, arguments.common.seed, outputs.has_echo(), sinks)?;
     }
     outputs.show(run, || views::plots(&views, learned, &real, arguments.common.seed))?;
     Ok(ExitCode::SUCCESS)
@@ -220,12 +225,19 @@ fn logged(
     let drive = folder(log, arguments.actions.as_deref())?;
     let mut outputs = Outputs::open("views", &arguments.common)?;
     let stopwatch = Stopwatch::start();
-    let run = LoggedViews::localize(&learned, &drive, moves, arguments.feature, params)?;
+    let bar = terminal::bar(drive.frames.len(), "frames");
+    let run = LoggedViews::localize(&learned, &drive, moves, arguments.feature, params, || {
+        bar.inc(1);
+        interrupt::flow()
+    });
+    bar.finish_and_clear();
+    let run = run?;
     let (name, seconds) = (log.display().to_string(), stopwatch.elapsed().as_secs_f64());
-    let summary = ReportRun { name, seconds, ..run.summarize(params) };
+    let warnings = interrupt::warning().into_iter().collect();
+    let summary = ReportRun { name, seconds, warnings, ..run.summarize(params) };
     let sinks = outputs.sinks()?;
     if !sinks.is_empty() {
-        views::draw_logged(&run, &drive, sinks)?;
+        views::draw_logged(&run, &drive, outputs.has_echo(), sinks)?;
     }
     outputs.show(summary, || views::logged_plots(&run, arguments.feature))?;
     Ok(ExitCode::SUCCESS)

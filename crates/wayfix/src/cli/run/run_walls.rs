@@ -2,10 +2,13 @@ use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations};
+use wayfix_sensor_log::{
+    Log, LogError, LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations,
+};
 use wayfix_systems::{
     settings::from_toml,
     slam::AssociationRule,
+    system::without_odometry_delay,
     walls::{self, SavedWallMap, WallSlamParams},
 };
 
@@ -21,12 +24,20 @@ pub(in crate::cli) fn is_for(records: &[Record]) -> bool {
     has(|data| matches!(data, RecordData::Scan(_))) && !has(|data| matches!(data, RecordData::Detections(_)))
 }
 
-/// `wayfix run slam` on a log of scans.
+/// A log of scans.
+pub(in crate::cli) struct Input {
+    pub(in crate::cli) records: Vec<Record>,
+    /// Whether the scans have their ranges; else they are read again.
+    pub(in crate::cli) is_kept: bool,
+    pub(in crate::cli) origin: LogFormat,
+    pub(in crate::cli) read: ReadReport,
+}
+
+/// `wayfix run slam` on a log of scans, which `open` opens again.
 pub(in crate::cli) fn main(
     arguments: &run_slam::Arguments,
-    records: &[Record],
-    origin: LogFormat,
-    read: &ReadReport,
+    Input { records, is_kept, origin, read }: Input,
+    open: &dyn Fn() -> Result<Log, LogError>,
 ) -> Result<ExitCode> {
     ensure!(
         arguments.profile.is_none(),
@@ -43,12 +54,24 @@ pub(in crate::cli) fn main(
     }
     let saved: Option<SavedWallMap> = arguments.saved_map()?;
     let relations = arguments.relations.as_deref().map(relations).transpose()?;
+    let rule = arguments.association;
     run_slam::execute(
         arguments,
-        (origin, records.len(), read),
-        |observe| match saved {
-            Some(saved) => walls::run_on(saved, records, &params, arguments.association, observe),
-            None => walls::run(records, &params, observe),
+        (origin, records.len(), &read),
+        |observe| {
+            // What is to be sorted is kept.
+            if is_kept || params.odometry_delay != 0.0 {
+                let records = if is_kept { records } else { open()?.read_all().0 };
+                let in_time = without_odometry_delay(&records, params.odometry_delay);
+                return match saved {
+                    Some(saved) => walls::run_on(saved, &records, in_time.iter(), &params, rule, observe),
+                    None => walls::run_streamed(&records, in_time.iter(), &params, observe),
+                };
+            }
+            match saved {
+                Some(saved) => walls::run_on(saved, &records, open()?, &params, rule, observe),
+                None => walls::run_streamed(&records, open()?, &params, observe),
+            }
         },
         |run| {
             let mut summary = walls::summarize(run);
