@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, VariableId};
+use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, RelativePosition, VariableId};
 
 use super::{
     AntennaPosition, Heading, MountedRangeBearing, PointSmootherParams, PoseObservation, SettledPose,
@@ -28,21 +28,22 @@ pub struct Detection {
 /// window, and a landmark can be taken back.
 pub struct PointSmoother {
     params: PointSmootherParams,
-    graph: Graph,
-    scale: VariableId<Vector1<f64>>,
+    pub(super) log_range_scale_sigma: f64,
+    pub(super) graph: Graph,
+    pub(super) scale: VariableId<Vector1<f64>>,
     /// Poses in the window, oldest first.
-    window: VecDeque<Frame>,
+    pub(super) window: VecDeque<Frame>,
     n_poses: usize,
     solved_at: Option<f64>,
-    landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
+    pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
 }
 
 #[derive(Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     number: usize,
     /// Time of the first step after it, s.
-    seconds: Option<f64>,
-    pose: VariableId<Pose2<f64>>,
+    pub(super) seconds: Option<f64>,
+    pub(super) pose: VariableId<Pose2<f64>>,
 }
 
 /// 95 % of the efficiency of least squares when there are no outliers.
@@ -51,6 +52,8 @@ const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 const LEAST_MOTION_SIGMA: [f64; 3] = [1e-4, 1e-4, 1e-5];
 /// Two landmarks that are one are together to within this, m.
 const SAME: f64 = 1e-3;
+/// Landmarks in the frame of the oldest pose: coordinates that no motion of the whole map changes.
+const IN_BODY: RelativePosition<Vector2<f64>> = RelativePosition { measured: Vector2::new(0.0, 0.0) };
 /// Online, a step follows a problem that was at its minimum: few iterations are left.
 const ONLINE: Params = Params {
     method: wayfix_smoother::Method::LevenbergMarquardt,
@@ -83,6 +86,7 @@ impl PointSmoother {
         Ok(Self {
             solved_at: None,
             params,
+            log_range_scale_sigma: start.log_range_scale_sigma,
             graph,
             scale,
             window: VecDeque::from([first]),
@@ -258,7 +262,7 @@ impl PointSmoother {
         let dropped: Vec<usize> =
             self.window.drain(..settled.len()).map(|frame| frame.pose.index()).collect();
         if !dropped.is_empty() {
-            self.graph.marginalize(&dropped)?;
+            self.graph.marginalize_relative(&dropped, &IN_BODY, self.window[0].pose)?;
         }
         Ok(settled)
     }
