@@ -11,8 +11,8 @@ mod common;
 
 use common::world;
 use nalgebra::{Const, Matrix2, Vector2};
-use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_smoother::{Graph, Kernel, Method, Params, RelativePosition, Residual, SmootherError, VariableId};
+use wayfix_estimation_traits::Manifold;
+use wayfix_smoother::{Graph, Kernel, Method, Params, Residual, SmootherError, VariableId};
 
 const EXACT: Params = Params {
     method: Method::LevenbergMarquardt,
@@ -105,44 +105,6 @@ fn nonlinear_minimum_stays_where_it_is() {
     world.graph.optimize(&EXACT).unwrap();
     assert!(value.local(world.graph.value(kept).unwrap()).norm() < 1e-6);
     assert!((world.graph.cost() / cost - 1.0).abs() < 1e-9);
-}
-
-/// A motion of the whole map contradicts no measurement between poses and landmarks: in relative coordinates it costs nothing afterwards either.
-#[test]
-fn relative_prior_leaves_motions_of_the_whole_map_free() {
-    let after_turn = |is_relative: bool| {
-        let mut world = world(3, 24, false);
-        let dropped: Vec<usize> = world.poses[..20].iter().map(|pose| pose.index()).collect();
-        let (base, in_body) = (world.poses[20], RelativePosition { measured: Vector2::zeros() });
-        let what = if is_relative {
-            world.graph.marginalize_relative(&dropped, &in_body, base).unwrap()
-        } else {
-            world.graph.marginalize(&dropped).unwrap()
-        };
-        assert!(what.neighbours.len() > 3);
-        let cost = world.graph.cost();
-        let turn = Pose2::new(3.0, -1.0, 0.7);
-        for pose in &world.poses[20..] {
-            let moved = turn.compose(world.graph.value(*pose).unwrap());
-            world.graph.set_value(*pose, moved).unwrap();
-        }
-        for landmark in &world.landmarks {
-            let moved = turn.transform(world.graph.value(*landmark).unwrap());
-            world.graph.set_value(*landmark, moved).unwrap();
-        }
-        world.graph.cost() / cost - 1.0
-    };
-    assert!(after_turn(true).abs() < 1e-9, "{}", after_turn(true));
-    assert!(after_turn(false) > 1.0, "{}", after_turn(false));
-}
-
-#[test]
-fn base_that_is_dropped_is_refused() {
-    let mut world = world(3, 24, true);
-    let (base, in_body) = (world.poses[2], RelativePosition { measured: Vector2::zeros() });
-    let refused = world.graph.marginalize_relative(&[base.index()], &in_body, base);
-    assert_eq!(refused.unwrap_err(), SmootherError::UnknownId);
-    assert!(world.graph.value(base).is_ok());
 }
 
 #[test]

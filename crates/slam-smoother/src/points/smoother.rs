@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, RelativePosition, VariableId};
+use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, VariableId};
 
 use super::{
     AntennaPosition, Heading, MountedRangeBearing, PointSmootherParams, PoseObservation, SettledPose,
@@ -52,8 +52,6 @@ const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 const LEAST_MOTION_SIGMA: [f64; 3] = [1e-4, 1e-4, 1e-5];
 /// Two landmarks that are one are together to within this, m.
 const SAME: f64 = 1e-3;
-/// Landmarks in the frame of the oldest pose: coordinates that no motion of the whole map changes.
-const IN_BODY: RelativePosition<Vector2<f64>> = RelativePosition { measured: Vector2::new(0.0, 0.0) };
 /// Online, a step follows a problem that was at its minimum: few iterations are left.
 const ONLINE: Params = Params {
     method: wayfix_smoother::Method::LevenbergMarquardt,
@@ -262,7 +260,7 @@ impl PointSmoother {
         let dropped: Vec<usize> =
             self.window.drain(..settled.len()).map(|frame| frame.pose.index()).collect();
         if !dropped.is_empty() {
-            self.graph.marginalize_relative(&dropped, &IN_BODY, self.window[0].pose)?;
+            self.graph.marginalize(&dropped)?;
         }
         Ok(settled)
     }

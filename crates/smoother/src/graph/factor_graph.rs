@@ -1,6 +1,7 @@
 use super::{
     batch::{AnyBatch, Batch},
     linear_prior::{LinearPrior, LinearPriors},
+    marginalize::{self, Marginalized},
     structure::Structure,
     values::Values,
 };
@@ -179,6 +180,52 @@ impl Graph {
         }
         self.structure = None;
         Ok(())
+    }
+
+    /// Takes variables back, by their numbers, with the residuals that name them; what earlier marginalizations say of them is marginalized.
+    ///
+    /// # Errors
+    /// As [`marginalize`](Self::marginalize).
+    pub fn remove_variables(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
+        marginalize::remove(self, variables)
+    }
+
+    /// Drops variables, by their numbers ([`VariableId::index`]), and keeps what their residuals say about the others.
+    ///
+    /// The residuals that name them are replaced by a quadratic in the other variables, about the present values: the Schur complement of the
+    /// dropped ones. Where these residuals are linear, nothing is lost; else their linearization, and the weight of their kernels, is final.
+    /// [Sibley et al. 2010, section 3.2; Dong-Si and Mourikis 2011]
+    ///
+    /// ```
+    /// use nalgebra::{Matrix1, Vector1};
+    /// use wayfix_smoother::{Graph, Params};
+    /// # use wayfix_smoother::Residual;
+    /// # struct Step(f64);
+    /// # impl Residual for Step {
+    /// #     type Dim = nalgebra::Const<1>;
+    /// #     type Variables = (Vector1<f64>, Vector1<f64>);
+    /// #     fn value(&self, (a, b): (&Vector1<f64>, &Vector1<f64>)) -> Vector1<f64> { b - a - Vector1::new(self.0) }
+    /// # }
+    /// let mut graph = Graph::new();
+    /// let [a, b, c] = [0.0, 0.9, 2.2].map(|x| graph.add_variable(Vector1::new(x)));
+    /// graph.fix(a)?;
+    /// graph.add(Step(1.0), (a, b), Matrix1::new(4.0))?; // the residual b - a - 1
+    /// graph.add(Step(1.0), (b, c), Matrix1::new(4.0))?;
+    /// let dropped = graph.marginalize(&[a.index(), b.index()])?;
+    /// assert_eq!((dropped.n_residuals, dropped.neighbours), (2, vec![c.index()]));
+    /// graph.optimize(&Params::default())?;
+    /// assert!((graph.value(c)?.x - 2.0).abs() < 1e-9 && graph.value(b).is_err());
+    /// # Ok::<(), wayfix_smoother::SmootherError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// * [`SmootherError::UnknownId`] for a number of no variable.
+    /// * [`SmootherError::IllConditioned`] when the others do not determine them.
+    /// * [`SmootherError::NotFinite`].
+    ///
+    /// The graph stays as it was.
+    pub fn marginalize(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
+        marginalize::marginalize(self, variables)
     }
 
     /// Number of variables, fixed ones included.

@@ -3,15 +3,16 @@ use std::any::Any;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    batch::AnyBatch, block_jacobian::BlockJacobian, dense_quadratic::DenseQuadratic,
-    linear_point::LinearPoint, values::Values,
+    batch::AnyBatch,
+    dense_quadratic::DenseQuadratic,
+    values::{LinearPoint, Values},
 };
 use crate::{
     Kernel, SmootherError,
     linear::{block_address::BlockAddress, normal_equations::NormalEquations},
 };
 
-/// What a marginalization leaves: $`δ^T H δ + 2 g^T δ + c`$ with differences $`δ`$ of some variables from linear points.
+/// What a marginalization leaves: $`δ^T H δ + 2 g^T δ + c`$ with $`δ = x ⊟ x_0`$ over some variables.
 pub(crate) struct LinearPrior {
     pub(super) variables: Vec<usize>,
     pub(super) points: Vec<Box<dyn LinearPoint>>,
@@ -30,29 +31,27 @@ impl LinearPriors {
     }
 }
 
-/// A [`LinearPrior`] in the tangent spaces at some values.
+/// A [`LinearPrior`] at some values.
 struct AtValues {
-    /// First coordinate of each variable, with their number.
-    places: Vec<(usize, usize)>,
-    /// $`J^T H J`$
-    hessian: DMatrix<f64>,
-    /// $`J^T (H δ + g)`$
+    /// $`∂δ_k / ∂x_k`$ and first coordinate of each variable.
+    jacobians: Vec<(usize, DMatrix<f64>)>,
+    /// $`H δ + g`$
     slope: DVector<f64>,
     cost: f64,
 }
 
 impl LinearPrior {
     fn at(&self, values: &Values) -> AtValues {
-        let (delta, jacobian) = BlockJacobian::of(&self.variables, &self.points, values);
+        let (mut delta, mut jacobians) = (Vec::with_capacity(self.gradient.len()), Vec::new());
+        for point in &self.points {
+            let (local, jacobian) = point.local(values);
+            jacobians.push((delta.len(), jacobian));
+            delta.extend(local);
+        }
+        let delta = DVector::from_vec(delta);
         let curved = &self.hessian * &delta;
         let cost = delta.dot(&curved) + 2.0 * self.gradient.dot(&delta) + self.constant;
-        let slope = jacobian.transpose_multiply(&(curved + &self.gradient));
-        AtValues { hessian: jacobian.congruence(&self.hessian), places: jacobian.places, slope, cost }
-    }
-
-    fn cost(&self, values: &Values) -> f64 {
-        let (delta, _) = BlockJacobian::of(&self.variables, &self.points, values);
-        delta.dot(&(&self.hessian * &delta)) + 2.0 * self.gradient.dot(&delta) + self.constant
+        AtValues { jacobians, slope: curved + &self.gradient, cost }
     }
 
     fn is_chosen(&self, chosen: &[bool]) -> bool {
@@ -80,7 +79,7 @@ impl AnyBatch for LinearPriors {
         true
     }
     fn cost(&self, values: &Values, _: f64) -> f64 {
-        self.0.iter().map(|(_, prior)| prior.cost(values)).sum()
+        self.0.iter().map(|(_, prior)| prior.at(values).cost).sum()
     }
     fn largest_graduated(&self, _: &Values) -> f64 {
         0.0
@@ -98,14 +97,18 @@ impl AnyBatch for LinearPriors {
         for (_, prior) in &self.0 {
             let at = prior.at(values);
             cost += at.cost;
-            for (place, (row, n)) in at.places.iter().copied().enumerate() {
-                for (column, width) in at.places[place..].iter().copied() {
+            for (place, (row, by_a)) in at.jacobians.iter().enumerate() {
+                let n = by_a.ncols();
+                for (column, by_b) in &at.jacobians[place..] {
                     let Some(block) = blocks.next() else { continue };
-                    block.add(at.hessian.view((row, column), (n, width)), equations.entries_mut());
+                    let right = prior.hessian.view((*row, *column), (n, by_b.ncols())) * by_b;
+                    let shape = (n, n, by_b.ncols());
+                    block.add_product(by_a.as_slice(), right.as_slice(), shape, equations.entries_mut());
                 }
                 if let Some(offset) = offsets[prior.variables[place]] {
-                    for k in 0..n {
-                        equations.gradient_mut()[offset + k] += at.slope[row + k];
+                    let slope = by_a.transpose() * at.slope.rows(*row, n);
+                    for (k, entry) in slope.iter().enumerate() {
+                        equations.gradient_mut()[offset + k] += entry;
                     }
                 }
             }
@@ -115,7 +118,7 @@ impl AnyBatch for LinearPriors {
 
     fn check(&self, values: &Values) -> Result<(), SmootherError> {
         for (index, prior) in &self.0 {
-            if !prior.cost(values).is_finite() {
+            if !prior.at(values).cost.is_finite() {
                 let what = "what a marginalization left";
                 return Err(SmootherError::NotFinite { what, residual: Some(*index) });
             }
@@ -124,17 +127,19 @@ impl AnyBatch for LinearPriors {
     }
 
     fn squared_norms(&self, values: &Values, into: &mut Vec<(usize, f64)>) {
-        into.extend(self.0.iter().map(|(index, prior)| (*index, prior.cost(values))));
+        into.extend(self.0.iter().map(|(index, prior)| (*index, prior.at(values).cost)));
     }
 
     fn linearize_chosen(&self, values: &Values, chosen: &[bool], dense: &mut DenseQuadratic) {
         for (_, prior) in self.0.iter().filter(|(_, prior)| prior.is_chosen(chosen)) {
             let at = prior.at(values);
             dense.constant += at.cost;
-            for ((row, n), a) in at.places.iter().copied().zip(&prior.variables) {
-                dense.add_slope(*a, at.slope.rows(row, n).into_owned());
-                for ((column, width), b) in at.places.iter().copied().zip(&prior.variables) {
-                    dense.add_block(*a, *b, at.hessian.view((row, column), (n, width)).into_owned());
+            for ((row, by_a), a) in at.jacobians.iter().zip(&prior.variables) {
+                let n = by_a.ncols();
+                dense.add_slope(*a, by_a.transpose() * at.slope.rows(*row, n));
+                for ((column, by_b), b) in at.jacobians.iter().zip(&prior.variables) {
+                    let block = prior.hessian.view((*row, *column), (n, by_b.ncols()));
+                    dense.add_block(*a, *b, by_a.transpose() * block * by_b);
                 }
             }
         }

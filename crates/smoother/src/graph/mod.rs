@@ -1,11 +1,9 @@
 //! Variables and residuals.
 
 pub(crate) mod batch;
-mod block_jacobian;
 pub(crate) mod dense_quadratic;
 mod factor_graph;
 pub(crate) mod keys;
-mod linear_point;
 mod linear_prior;
 mod marginalize;
 pub(crate) mod structure;

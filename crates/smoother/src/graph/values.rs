@@ -1,6 +1,7 @@
 use std::{any::Any, marker::PhantomData};
 
-use super::linear_point::{AbsolutePoint, LinearPoint};
+use nalgebra::DMatrix;
+
 use crate::{Variable, VariableId};
 
 /// The values of all variables: one column for each type.
@@ -23,6 +24,25 @@ trait Column: Any + Send {
     fn n_present(&self) -> usize;
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
+}
+
+/// A value that a variable had, and how far the variable is from it now.
+pub(crate) trait LinearPoint: Send {
+    /// $`x ⊟ x_0`$, and its derivative by $`x`$ in columns.
+    fn local(&self, values: &Values) -> (Vec<f64>, DMatrix<f64>);
+}
+
+struct TypedLinearPoint<X> {
+    slot: usize,
+    value: X,
+}
+
+impl<X: Variable> LinearPoint for TypedLinearPoint<X> {
+    fn local(&self, values: &Values) -> (Vec<f64>, DMatrix<f64>) {
+        let now = &values.column::<X>()[self.slot];
+        let (delta, jacobian) = now.local_from(&self.value);
+        (delta, DMatrix::from_vec(now.tangent_dim(), now.tangent_dim(), jacobian))
+    }
 }
 
 #[derive(Clone)]
@@ -50,7 +70,7 @@ impl<X: Variable> Column for TypedColumn<X> {
         }
     }
     fn linear_point(&self, slot: usize) -> Box<dyn LinearPoint> {
-        Box::new(AbsolutePoint { slot, index: self.indices[slot], value: self.values[slot].clone() })
+        Box::new(TypedLinearPoint { slot, value: self.values[slot].clone() })
     }
     fn remove(&mut self, slot: usize) {
         self.serials[slot] = None;
@@ -127,12 +147,6 @@ impl Values {
     pub(crate) fn linear_point(&self, index: usize) -> Box<dyn LinearPoint> {
         let (column, slot) = self.places[index];
         self.columns[column].linear_point(slot)
-    }
-
-    /// The slot of a variable, if it is of this type.
-    pub(crate) fn slot_of<X: Variable>(&self, index: usize) -> Option<usize> {
-        let (column, slot) = self.places[index];
-        self.columns[column].as_any().is::<TypedColumn<X>>().then_some(slot)
     }
 
     /// All values of a type, by slot.

@@ -1,5 +1,3 @@
-use nalgebra::DMatrixView;
-
 /// Where the block of two variables lies in the stored upper triangle.
 ///
 /// A column of the matrix holds the rows above the diagonal block, `height` of them, and its part of the diagonal block.
@@ -30,20 +28,6 @@ impl BlockAddress {
     #[inline]
     pub(crate) fn entry(&self, i: usize, k: usize) -> usize {
         self.start + k * self.height + k * (k + 1) / 2 + i
-    }
-
-    /// Adds a block.
-    pub(crate) fn add(&self, block: DMatrixView<'_, f64>, entries: &mut [f64]) {
-        if self.place == Place::Nowhere {
-            return;
-        }
-        for (k, column) in block.column_iter().enumerate() {
-            let n_rows = if self.place == Place::Diagonal { k + 1 } else { block.nrows() };
-            for (i, value) in column.iter().take(n_rows).enumerate() {
-                let entry = if self.place == Place::Below { self.entry(k, i) } else { self.entry(i, k) };
-                entries[entry] += value;
-            }
-        }
     }
 
     /// Adds $`L^T R`$ for matrices by columns; `shape` is the number of rows, of columns of L and of columns of R.
