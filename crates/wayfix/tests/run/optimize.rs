@@ -60,7 +60,7 @@ fn methods_and_starts_agree() {
 fn kernels_limit_the_weight_of_a_wrong_closure() {
     let scratch = Scratch::new();
     let right = format!("{SQUARE}EDGE_SE2 0 2 1 1 3.14 10 0 0 10 0 10\n");
-    let wrong = scratch.file("wrong.g2o", &format!("{right}EDGE_SE2 1 3 9 -7 1 10 0 0 10 0 10\n"));
+    let wrong = scratch.file("wrong.g2o", format!("{right}EDGE_SE2 1 3 9 -7 1 10 0 0 10 0 10\n"));
     let better = scratch.path("better.g2o");
     let far = |extra: &[&str]| {
         let [wrong, better] = [&wrong, &better].map(|path| path.to_str().unwrap());
