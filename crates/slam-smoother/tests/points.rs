@@ -128,6 +128,22 @@ fn short_window_stays_bounded_and_near_the_truth() {
 }
 
 #[test]
+fn export_has_a_line_for_each_variable_and_residual() {
+    let (steps, _) = steps(40);
+    let (batch, _) = run(None, &steps);
+    let text = batch.export();
+    let count = |kind: &str| text.lines().filter(|line| line.split(' ').next() == Some(kind)).count();
+    let n_detections: usize = steps.iter().map(|step| step.seen.len()).sum();
+    assert_eq!([count("POSE"), count("LANDMARK"), count("LOG_SCALE")], [41, 8, 1]);
+    assert_eq!([count("MOTION"), count("DETECTION")], [40, n_detections]);
+    let numbers = |line: &str| line.split(' ').skip(1).map(|word| word.parse::<f64>().unwrap()).collect();
+    let motion: Vec<f64> = text.lines().find(|line| line.starts_with("MOTION")).map(numbers).unwrap();
+    let first = steps[0].motion;
+    assert_eq!(motion[2..5], [first.x(), first.y(), first.heading()]);
+    assert!((motion[5] - 1.0 / (0.0004 + 1e-8)).abs() < 1e-6 && motion.len() == 11, "{motion:?}");
+}
+
+#[test]
 fn landmark_that_is_taken_back_leaves_no_trace() {
     let (steps, _) = steps(30);
     let (_, expected) = run(Some(100.0), &steps);

@@ -59,7 +59,8 @@ fn range_residual_keeps_the_laws() {
 fn path_beacons_and_calibration_are_found() {
     for outlier in [0, 10] {
         let (input, truth) = drive(false, outlier);
-        let found = estimate(&input, &RangeOnlyParams::default()).unwrap();
+        let params = RangeOnlyParams { driving_direction_sigma: 0.0, ..RangeOnlyParams::default() };
+        let found = estimate(&input, &params).unwrap();
         assert!(found.unplaced.is_empty());
         // Errors within five standard deviations by the estimate's own covariance: 1e-6 for Gaussian errors.
         for (id, [x, y]) in BEACONS {
@@ -84,6 +85,34 @@ fn path_beacons_and_calibration_are_found() {
         assert!((found.range_sigma / RANGE_SIGMA).ln().abs() < 1.5_f64.ln(), "{}", found.range_sigma);
         assert_eq!(found.n_outliers > 50, outlier > 0, "{}", found.n_outliers);
     }
+}
+
+/// Odometry that drives askew fits as well: the map is turned, headings are not, and only the covariances know.
+#[test]
+fn driving_direction_turns_the_map_and_no_range_tells() {
+    let (input, _) = drive(false, 0);
+    let angle = 0.04;
+    let turn = Pose2::new(0.0, 0.0, angle);
+    let mut askew = input.clone();
+    for motion in &mut askew.motions {
+        motion.translation = turn.transform(&motion.translation);
+    }
+    let [straight, askew] =
+        [input, askew].map(|input| estimate(&input, &RangeOnlyParams::default()).unwrap());
+    let start = straight.poses[0].translation;
+    let mut n_far = 0;
+    for (number, covariance) in straight.pose_covariances.iter().skip(50).step_by(50) {
+        let (a, b) = (straight.poses[*number], askew.poses[*number]);
+        let turned = start + turn.transform(&(a.translation - start));
+        assert!((turned - b.translation).norm() < 0.02, "pose {number}: {turned} {}", b.translation);
+        assert!((a.heading() - b.heading()).abs() < 2e-3, "pose {number}");
+        let error = a.inverse().compose(&b).translation;
+        let of_place = covariance.fixed_view::<2, 2>(0, 0).into_owned();
+        let nees = error.dot(&of_place.cholesky().unwrap().solve(&error));
+        assert!(nees < (angle / 0.05_f64).powi(2) + 0.05, "pose {number}: {nees}");
+        n_far += usize::from(error.norm() > RANGE_SIGMA);
+    }
+    assert!(n_far > 3, "{n_far}");
 }
 
 #[test]
@@ -133,6 +162,8 @@ fn numbers_that_are_none_are_refused_by_place() {
     unknown.ranges[3].pose = 601;
     let error = estimate(&unknown, &RangeOnlyParams::default()).unwrap_err();
     assert!(matches!(error, SlamSmootherError::UnknownPose { index: 3, pose: 601, n_poses: 601 }), "{error}");
+    let params = RangeOnlyParams { driving_direction_sigma: f64::NAN, ..RangeOnlyParams::default() };
+    assert!(matches!(estimate(&input, &params), Err(SlamSmootherError::OutOfRange { .. })));
     let mut broken = input;
     broken.motions[5] = Pose2::new(f64::NAN, 0.0, 0.0);
     assert!(estimate(&broken, &RangeOnlyParams::default()).is_err());

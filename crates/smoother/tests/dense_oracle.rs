@@ -13,7 +13,7 @@ use approx::abs_diff_eq;
 use common::world;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_smoother::{Between, Graph, Method, Params, RelativePosition, Residual, Stop, VariableId};
+use wayfix_smoother::{Between, Graph, Method, Params, RelativePosition, Residual, Stop};
 
 /// Every method ends at the same minimum, where the gradient is zero.
 #[test]
@@ -94,18 +94,46 @@ fn step_and_covariances_equal_dense_algebra() {
     assert!(expected.local(graph.value(poses[2]).unwrap()).norm() < 1e-10);
 }
 
-/// Covariances of a larger graph, beside the inverse of what single columns give.
+/// All covariances of 365 coordinates, and those with a landmark, beside the inverse of the dense matrix.
 #[test]
-fn covariance_of_a_larger_graph_is_symmetric_and_grows() {
-    let mut world = world(5, 40, true);
+fn covariances_of_a_larger_graph_equal_the_dense_inverse() {
+    let mut world = world(5, 120, true);
     world.graph.optimize(&Params::default()).unwrap();
-    let trace = |world: &mut common::World, pose: VariableId<Pose2<f64>>| {
-        let covariance = world.graph.marginals().unwrap().covariance(pose).unwrap();
-        assert!(nalgebra::Cholesky::new(covariance.clone()).is_some());
-        covariance.trace()
+    let n_poses = world.poses.len();
+    // The first pose is fixed; landmarks come after the poses.
+    let row = |index: usize| {
+        if index < n_poses { 3 * (index - 1) } else { 3 * (n_poses - 1) + 2 * (index - n_poses) }
     };
-    let (near, far) = (world.poses[1], world.poses[12]);
-    assert!(trace(&mut world, near) < trace(&mut world, far));
+    let mut hessian = DMatrix::zeros(365, 365);
+    let mut add = |named: &[usize], jacobians: [DMatrix<f64>; 2], information: DMatrix<f64>| {
+        for (a, by_a) in named.iter().zip(&jacobians).filter(|(index, _)| **index > 0) {
+            for (b, by_b) in named.iter().zip(&jacobians).filter(|(index, _)| **index > 0) {
+                let mut block = hessian.view_mut((row(*a), row(*b)), (by_a.ncols(), by_b.ncols()));
+                block += by_a.transpose() * &information * by_b;
+            }
+        }
+    };
+    let (graph, poses, landmarks) = (&world.graph, &world.poses, &world.landmarks);
+    let pose = |index: usize| graph.value(poses[index]).unwrap();
+    for (motion, named, information) in graph.residuals::<Between<Pose2<f64>>>() {
+        let (a, b) = motion.jacobians((pose(named[0]), pose(named[1])));
+        add(named, [a.dynamic(), b.dynamic()], information.dynamic());
+    }
+    for (seen, named, information) in graph.residuals::<RelativePosition<Vector2<f64>>>() {
+        let landmark = graph.value(landmarks[named[1] - n_poses]).unwrap();
+        let (a, b) = seen.jacobians((pose(named[0]), landmark));
+        add(named, [a.dynamic(), b.dynamic()], information.dynamic());
+    }
+    let inverse = hessian.cholesky().unwrap().inverse();
+    let landmark = world.landmarks[2];
+    let marginals = world.graph.marginals().unwrap();
+    let close = |a: &DMatrix<f64>, b: DMatrix<f64>| (a - &b).amax() < 1e-9 * b.amax();
+    for (index, pose) in world.poses.iter().enumerate().skip(1) {
+        let own = inverse.view((row(index), row(index)), (3, 3)).into_owned();
+        assert!(close(&marginals.covariance(*pose).unwrap(), own), "pose {index}");
+        let cross = inverse.view((row(index), row(n_poses + 2)), (3, 2)).into_owned();
+        assert!(close(&marginals.cross_covariance(*pose, landmark).unwrap(), cross), "pose {index}");
+    }
 }
 
 /// Normal equations without sparsity: pose 0 is fixed, the landmark is number 4.

@@ -95,7 +95,11 @@ fn ranges_place_beacons_and_say_what_is_assumed() {
         ["ate_rmse_m", "ate_aligned_rmse_m", "nees_mean", "n_landmarks", "range_bias_m"].into_iter().all(has)
     );
     let said = |name: &str| run.events.warnings().iter().any(|warning| warning.name == name);
-    assert!(said("receiver_calibration_estimated") && said("noise_estimated"));
+    assert!(
+        said("receiver_calibration_estimated")
+            && said("noise_estimated")
+            && said("driving_direction_unknown")
+    );
     assert!(ranges::plots(&run).unwrap().len() >= 2);
 }
 

@@ -23,10 +23,25 @@ fn smoother_refuses_what_it_has_not() {
     for (arguments, named) in [
         (vec!["--log", &points, "--save", "map"], "--save"),
         (vec!["--log", &points, "--observability"], "--observability"),
+        (vec!["--log", &points, "--graph-out", "graph.txt"], "--graph-out"),
         (vec!["--log", &fixture("office_laser.mcap")], "walls need --estimator ekf"),
     ] {
         let (is_success, _, error) = run(&[&arguments[..], &["--estimator", "smoother"]].concat());
         assert!(!is_success && error.contains(named), "{error}");
+    }
+}
+
+#[test]
+fn batch_of_points_is_written_and_walls_have_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let graph = folder.path().join("graph.txt").display().to_string();
+    let (is_success, _, error) = run(&["--log", &fixture("office_laser.mcap"), "--graph-out", &graph]);
+    assert!(!is_success && error.contains("no batch"), "{error}");
+    let (is_success, _, error) = run(&["--log", &fixture("loop_known.mcap"), "--graph-out", &graph]);
+    assert!(is_success, "{error}");
+    let text = fs::read_to_string(&graph).unwrap();
+    for kind in ["POSE ", "LANDMARK ", "LOG_SCALE ", "MOTION ", "DETECTION "] {
+        assert!(text.lines().any(|line| line.starts_with(kind)), "{kind}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Points seen in range and bearing, with given pairings, in a window of time or in one batch.
 
+mod export;
 mod params;
 mod residuals;
 mod smoother;

@@ -28,21 +28,22 @@ pub struct Detection {
 /// window, and a landmark can be taken back.
 pub struct PointSmoother {
     params: PointSmootherParams,
-    graph: Graph,
-    scale: VariableId<Vector1<f64>>,
+    pub(super) log_range_scale_sigma: f64,
+    pub(super) graph: Graph,
+    pub(super) scale: VariableId<Vector1<f64>>,
     /// Poses in the window, oldest first.
-    window: VecDeque<Frame>,
+    pub(super) window: VecDeque<Frame>,
     n_poses: usize,
     solved_at: Option<f64>,
-    landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
+    pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
 }
 
 #[derive(Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     number: usize,
     /// Time of the first step after it, s.
-    seconds: Option<f64>,
-    pose: VariableId<Pose2<f64>>,
+    pub(super) seconds: Option<f64>,
+    pub(super) pose: VariableId<Pose2<f64>>,
 }
 
 /// 95 % of the efficiency of least squares when there are no outliers.
@@ -83,6 +84,7 @@ impl PointSmoother {
         Ok(Self {
             solved_at: None,
             params,
+            log_range_scale_sigma: start.log_range_scale_sigma,
             graph,
             scale,
             window: VecDeque::from([first]),

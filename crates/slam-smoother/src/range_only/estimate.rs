@@ -20,13 +20,18 @@ pub struct RangeOnlyParams {
     pub start_noise: RangeOnlyNoise,
     /// Bias and scale of the receiver beforehand.
     pub calibration: CalibrationPrior,
+    /// Standard deviation of the angle between heading and direction of driving, rad.
+    ///
+    /// Ranges to beacons of unknown place do not tell it: another angle turns path and beacons about the start. It only widens covariances.
+    /// Default 0.05: a sensor of heading that is mounted by hand.
+    pub driving_direction_sigma: f64,
 }
 
 impl Default for RangeOnlyParams {
     fn default() -> Self {
         let start_noise =
             RangeOnlyNoise { translation_per_sqrt_meter: 0.04, heading_per_sqrt_meter: 0.01, range: 1.0 };
-        Self { start_noise, calibration: CalibrationPrior::default() }
+        Self { start_noise, calibration: CalibrationPrior::default(), driving_direction_sigma: 0.05 }
     }
 }
 
@@ -83,6 +88,11 @@ pub fn estimate(
     params: &RangeOnlyParams,
 ) -> Result<RangeOnlyEstimate, SlamSmootherError> {
     input.check()?;
+    let sigma = params.driving_direction_sigma;
+    if !(sigma >= 0.0 && sigma.is_finite()) {
+        let (what, index, wanted) = ("parameter driving_direction_sigma", 0, "finite and not negative");
+        return Err(SlamSmootherError::OutOfRange { what, index, value: sigma, wanted });
+    }
     let mut noise = params.start_noise;
     let mut solution =
         Solution { poses: vec![input.start], beacons: BTreeMap::new(), calibration: Vector2::zeros() };
@@ -110,7 +120,9 @@ pub fn estimate(
     };
     noise::maximize_likelihood(&mut graph)?;
     let unplaced = unplaced(input, &graph.solution()?, graph.calibration_covariance()?, graph.noise());
-    finish(&mut graph, unplaced)
+    let mut estimate = finish(&mut graph, unplaced)?;
+    add_driving_direction(&mut estimate, params.driving_direction_sigma);
+    Ok(estimate)
 }
 
 fn finish(
@@ -136,6 +148,20 @@ fn finish(
         n_ranges: graph.n_ranges(),
         poses: solution.poses,
     })
+}
+
+/// Adds what an unknown direction of driving does: path and beacons turn about the start, headings stay.
+fn add_driving_direction(estimate: &mut RangeOnlyEstimate, sigma: f64) {
+    let start = estimate.poses[0].translation;
+    let moved = |place: Vector2<f64>| Vector2::new(start.y - place.y, place.x - start.x) * sigma;
+    for (number, covariance) in &mut estimate.pose_covariances {
+        let pose = estimate.poses[*number];
+        let in_body = (pose.rotation_matrix().transpose() * moved(pose.translation)).push(0.0);
+        *covariance += in_body * in_body.transpose();
+    }
+    for (place, covariance) in estimate.beacons.values_mut() {
+        *covariance += moved(*place) * moved(*place).transpose();
+    }
 }
 
 /// Lengths of the prefixes that are solved one after the other. The whole run comes twice: the second time beacons are placed by its better path.

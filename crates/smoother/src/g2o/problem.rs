@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 
 use super::{G2oError, PoseGraph, RigidPose, linear_start};
-use crate::{Graph, SmootherError, VariableId, information};
+use crate::{Graph, ResidualId, SmootherError, VariableId, information};
 
 /// What to do with information matrices that have negative eigenvalues.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub struct Problem<P: RigidPose> {
     pub poses: Vec<VariableId<P>>,
     /// Variables of the landmarks.
     pub points: Vec<VariableId<P::Point>>,
+    /// Residuals of the edges between poses, in the order of the pose graph.
+    pub edges: Vec<ResidualId>,
     /// How many information matrices were repaired.
     pub n_repaired: usize,
 }
@@ -46,9 +48,11 @@ impl<P: RigidPose> PoseGraph<P> {
             }
         }
         let mut check = Check { repair, n_indefinite: 0, first_line: 0, smallest: 0.0 };
+        let mut edges = Vec::with_capacity(self.edges.len());
         for edge in &self.edges {
             let Some(information) = check.usable(&edge.information, edge.line)? else { continue };
-            P::add_edge(&mut graph, &edge.measured, (poses[edge.from], poses[edge.to]), &information)?;
+            let ids = (poses[edge.from], poses[edge.to]);
+            edges.push(P::add_edge(&mut graph, &edge.measured, ids, &information)?);
         }
         for edge in &self.point_edges {
             let Some(information) = check.usable(&edge.information, edge.line)? else { continue };
@@ -59,7 +63,7 @@ impl<P: RigidPose> PoseGraph<P> {
             let Check { n_indefinite: count, first_line, smallest, .. } = check;
             return Err(G2oError::Indefinite { count, total, first_line, smallest });
         }
-        Ok(Problem { graph, poses, points, n_repaired: check.n_indefinite })
+        Ok(Problem { graph, poses, points, edges, n_repaired: check.n_indefinite })
     }
 }
 

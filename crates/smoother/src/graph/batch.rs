@@ -20,6 +20,7 @@ pub(crate) struct Batch<R: Residual> {
 
 /// A batch whose type is forgotten.
 pub(crate) trait AnyBatch: Send {
+    fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
     fn len(&self) -> usize;
     /// Numbers of the variables of each residual.
@@ -99,6 +100,11 @@ impl<R: Residual> Batch<R> {
         Ok(())
     }
 
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (&R, &[usize], &Information<R>)> {
+        let named = self.keys.iter().map(|keys| &keys.indices[..R::Variables::ARITY]);
+        self.residuals.iter().zip(named).zip(&self.information).map(|((r, named), omega)| (r, named, omega))
+    }
+
     /// Numbers grow from slot to slot.
     fn slot(&self, index: usize) -> Option<usize> {
         self.indices.binary_search(&index).ok()
@@ -134,6 +140,9 @@ impl<R: Residual> Batch<R> {
 }
 
 impl<R: Residual> AnyBatch for Batch<R> {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
     fn as_any_mut(&mut self) -> &mut dyn Any {
         self
     }

@@ -238,6 +238,14 @@ impl Graph {
         self.batches.iter().map(|batch| batch.len()).sum()
     }
 
+    /// The residuals of a type in the order of adding, with the numbers of their variables and their information.
+    pub fn residuals<R: Residual>(&self) -> impl Iterator<Item = (&R, &[usize], &Information<R>)> {
+        self.batches
+            .iter()
+            .filter_map(|batch| batch.as_any().downcast_ref::<Batch<R>>())
+            .flat_map(Batch::entries)
+    }
+
     /// $`\sum ρ(r^T Ω r)`$ at the present values.
     pub fn cost(&self) -> f64 {
         self.cost_at(&self.values, 1.0)

@@ -60,6 +60,9 @@ impl LinearPrior {
 }
 
 impl AnyBatch for LinearPriors {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
     fn as_any_mut(&mut self) -> &mut dyn Any {
         self
     }

@@ -28,6 +28,7 @@ const MAX_BATCH_POSES: usize = 20_000;
 pub(super) struct PointFollower {
     smoother: PointSmoother,
     is_batch: bool,
+    is_graph_recorded: bool,
     /// Motion since the newest pose of the smoother, with covariance.
     motion: Pose2<f64>,
     covariance: Matrix3<f64>,
@@ -69,6 +70,7 @@ impl PointFollower {
         Ok(Some(Box::new(Self {
             smoother,
             is_batch,
+            is_graph_recorded: params.record_graph,
             motion: Pose2::identity(),
             covariance: Matrix3::zeros(),
             has_anchors: false,
@@ -204,6 +206,7 @@ impl SlamFollower<PointSensor> for PointFollower {
     }
 
     fn finish(&mut self) -> Result<SmoothedRun, String> {
+        let graph = (self.is_batch && self.is_graph_recorded).then(|| self.smoother.export());
         self.try_to(|follower| {
             let settled = follower.smoother.finish()?;
             follower.settle(&settled);
@@ -215,6 +218,7 @@ impl SlamFollower<PointSensor> for PointFollower {
                 estimates: std::mem::take(&mut self.estimates),
                 landmarks: self.smoother.landmarks(),
                 is_batch: self.is_batch,
+                graph,
             }),
         }
     }

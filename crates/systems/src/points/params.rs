@@ -65,6 +65,9 @@ pub struct PointSlamParams {
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
+    /// Whether to keep the text of the batch.
+    #[serde(skip)]
+    pub record_graph: bool,
     /// Whether a smoother follows the filter; asked for on the command line too.
     #[serde(skip)]
     pub smoothing: Smoothing,
@@ -169,6 +172,7 @@ impl PointSlamParams {
                     ..LandmarkConfirmationParams::default()
                 },
                 record_observability: false,
+                record_graph: false,
                 smoothing: Smoothing::Off,
             },
             RobotProfile::RangeBearing => Self {

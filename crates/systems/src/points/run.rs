@@ -49,7 +49,7 @@ pub fn run(
     };
     let mut system = from(start)?;
     let has_truth = !truth.is_empty() || true_positions.last_stamp().is_some();
-    if params.smoothing == Smoothing::Reference && !has_truth {
+    if params.smoothing == Smoothing::Reference && !has_truth && !params.record_graph {
         system.estimator.follower = None; // nothing to compare the batch with
     }
     if params.start_pose.is_none() {

@@ -41,6 +41,8 @@ pub struct SmoothedRun {
     pub estimates: Vec<StampedEstimate>,
     /// Landmarks by identity.
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
+    /// The least squares problem of a batch before it is solved, where it is asked for: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
+    pub graph: Option<String>,
     /// Whether it is a batch over the whole log that the filter is compared with, without covariances.
     pub is_batch: bool,
 }

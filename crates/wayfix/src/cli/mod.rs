@@ -106,10 +106,18 @@ pub fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            wayfix_evaluation::terminal::print_message(format!("error: {error:#}"));
+            wayfix_evaluation::terminal::print_message(format!("error: {}", with_causes(&error)));
             ExitCode::FAILURE
         }
     }
+}
+
+/// An error with its causes; those that its text already ends with are not said again.
+fn with_causes(error: &anyhow::Error) -> String {
+    error.chain().skip(1).fold(error.to_string(), |text, cause| {
+        let cause = cause.to_string();
+        if text.ends_with(&cause) { text } else { format!("{text}: {cause}") }
+    })
 }
 
 fn run(system: Run) -> Result<ExitCode> {

@@ -1,12 +1,13 @@
 use std::{
     collections::BTreeMap,
     fs::{self, File},
-    io::BufWriter,
+    io::{BufWriter, Write},
     path::{Path, PathBuf},
     process::ExitCode,
 };
 
 use anyhow::{Context, Result, anyhow, ensure};
+use flate2::{Compression, write::GzEncoder};
 use wayfix_evaluation::{
     plot::{MapPlot, SvgPlot},
     report::{FullReport, MachineInfo, Metric, ReportRun, ReportSuite, RunSummary, table, table::TableStyle},
@@ -14,7 +15,7 @@ use wayfix_evaluation::{
 };
 use wayfix_sensor_log::read_text;
 use wayfix_smoother::{
-    Method, Params, Stop,
+    Kernel, Method, Params, Stop,
     g2o::{self, G2o, G2oError, PoseGraph, Repair, RigidPose},
 };
 use wayfix_systems::system::Stopwatch;
@@ -28,7 +29,7 @@ use wayfix_systems::system::Stopwatch;
 pub(super) struct Arguments {
     /// The graph: a .g2o file of 2-d or 3-d poses and landmarks; may be compressed with gzip.
     graph: PathBuf,
-    /// Write the optimized graph to this file, as g2o text.
+    /// Write the optimized graph to this file, as g2o text; compressed where the name ends with `.gz`.
     #[arg(long, value_name = "FILE")]
     graph_out: Option<PathBuf>,
     /// Folder for index.html, report.json and pictures before and after.
@@ -43,6 +44,9 @@ pub(super) struct Arguments {
     /// How to take a step.
     #[arg(long, value_enum, default_value_t = StepMethod::LevenbergMarquardt)]
     method: StepMethod,
+    /// Limit the weight of loop closures that fit worse than 99 % of right ones do: of edges between poses that do not follow each other.
+    #[arg(long, value_enum)]
+    kernel: Option<KernelName>,
     /// Most iterations.
     #[arg(long, value_name = "N", default_value_t = Params::default().max_iterations)]
     max_iterations: usize,
@@ -67,6 +71,26 @@ enum StepMethod {
     Dogleg,
 }
 
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum KernelName {
+    Huber,
+    Cauchy,
+    /// From a convex start: graduated non-convexity.
+    GemanMcclure,
+}
+
+impl KernelName {
+    fn kernel(self, n_rows: usize) -> Kernel {
+        // Square root of the 99 % quantile of χ² with 3 and 6 degrees of freedom.
+        let c = if n_rows == 3 { 3.368 } else { 4.100 };
+        match self {
+            Self::Huber => Kernel::Huber { k: c },
+            Self::Cauchy => Kernel::Cauchy { c },
+            Self::GemanMcclure => Kernel::GemanMcClure { c },
+        }
+    }
+}
+
 const EXAMPLES: &str = "\
 Lines of the file:
   VERTEX_SE2 id x y θ                              EDGE_SE2 i j x y θ I11 I12 I13 I22 I23 I33
@@ -83,6 +107,7 @@ Figures:
 Examples:
   wayfix optimize manhattan.g2o.gz
   wayfix optimize torus3D.g2o --graph-out torus3D-optimized.g2o --out results
+  wayfix optimize with-wrong-closures.g2o --kernel geman-mcclure
   wayfix optimize two-floors.g2o --fix 0 --fix 1000
   wayfix optimize cubicle.g2o.gz --repair --json";
 
@@ -123,6 +148,12 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
             "{n} information matrices are indefinite: their negative eigenvalues are set to 0"
         ));
     }
+    if let Some(name) = arguments.kernel {
+        let edges = file.edges.iter().zip(&problem.edges);
+        for (_, id) in edges.filter(|(edge, _)| edge.from.abs_diff(edge.to) != 1) {
+            problem.graph.set_kernel(*id, name.kernel(P::COORDINATES.len()))?;
+        }
+    }
     let start_cost = problem.graph.cost();
     let params = Params {
         method: match arguments.method {
@@ -131,6 +162,7 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
             StepMethod::Dogleg => Method::Dogleg,
         },
         max_iterations: arguments.max_iterations,
+        graduated: matches!(arguments.kernel, Some(KernelName::GemanMcclure)),
         ..Params::default()
     };
 
@@ -165,12 +197,23 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
         ..ReportRun::default()
     };
     if let Some(path) = &arguments.graph_out {
-        let cannot = || format!("cannot write {}", path.display());
-        file.write(BufWriter::new(File::create(path).with_context(cannot)?)).with_context(cannot)?;
+        write_graph(&file, path).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let after = picture(&file, format!("After: cost {:.6}", summary.cost));
     show(run, arguments, [before, after])?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn write_graph<P: RigidPose>(file: &PoseGraph<P>, path: &Path) -> Result<()> {
+    let to = BufWriter::new(File::create(path)?);
+    if path.extension().is_some_and(|extension| extension == "gz") {
+        let mut packed = GzEncoder::new(to, Compression::default());
+        file.write(&mut packed)?;
+        packed.finish()?.flush()?;
+    } else {
+        file.write(to)?;
+    }
+    Ok(())
 }
 
 /// Poses in the order of the file, with the edges that close loops beneath.

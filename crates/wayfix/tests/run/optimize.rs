@@ -16,7 +16,7 @@ const SQUARE: &str = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.2 0 1.5\nVERTEX_SE2 2 1
 fn optimized_graph_has_the_figures_and_is_its_own_optimum() {
     let scratch = Scratch::new();
     let (graph, better, out) =
-        (scratch.file("square.g2o", SQUARE), scratch.path("better.g2o"), scratch.path("out"));
+        (scratch.file("square.g2o", SQUARE), scratch.path("better.g2o.gz"), scratch.path("out"));
     let [graph, better, out] = [&graph, &better, &out].map(|path| path.to_str().unwrap());
     let first = wayfix(["optimize", graph, "--json", "--graph-out", better, "--out", out]);
     assert_eq!(first.code, 0, "{}", first.stderr);
@@ -27,6 +27,13 @@ fn optimized_graph_has_the_figures_and_is_its_own_optimum() {
     for file in ["index.html", "report.json", "before.svg", "after.svg"] {
         assert!(fs::metadata(format!("{out}/{file}")).unwrap().len() > 100, "{file}");
     }
+    let packed = fs::read(better).unwrap();
+    assert!(packed.starts_with(&[0x1f, 0x8b]), "not compressed");
+    let cut = scratch.path("cut.g2o.gz");
+    fs::write(&cut, &packed[..packed.len() / 2]).unwrap();
+    let refused = wayfix(["optimize", cut.to_str().unwrap()]);
+    assert_eq!(refused.code, 1);
+    assert_eq!(refused.stderr.matches("deflate").count(), 1, "{}", refused.stderr);
     let again = wayfix(["optimize", better, "--json", "--start", "file"]);
     assert_abs_diff_eq!(again.metric("start_cost") / cost, 1.0, epsilon = 1e-9);
     assert!(again.metric("iterations") <= 2.0);
@@ -48,6 +55,31 @@ fn methods_and_starts_agree() {
                 "{method} {start}"
             );
         }
+    }
+}
+
+#[test]
+fn kernels_limit_the_weight_of_a_wrong_closure() {
+    let scratch = Scratch::new();
+    let right = format!("{SQUARE}EDGE_SE2 0 2 1 1 3.14 10 0 0 10 0 10\n");
+    let wrong = scratch.file("wrong.g2o", format!("{right}EDGE_SE2 1 3 9 -7 1 10 0 0 10 0 10\n"));
+    let better = scratch.path("better.g2o");
+    let far = |extra: &[&str]| {
+        let [wrong, better] = [&wrong, &better].map(|path| path.to_str().unwrap());
+        let arguments = ["optimize", wrong, "--json", "--graph-out", better];
+        assert_eq!(wayfix(arguments.iter().chain(extra)).code, 0);
+        let text = fs::read_to_string(better).unwrap();
+        let line = text.lines().find(|line| line.starts_with("VERTEX_SE2 2 ")).unwrap();
+        let at: Vec<f64> = line.split(' ').skip(2).map(|word| word.parse().unwrap()).collect();
+        (at[0] - 1.0).hypot(at[1] - 1.0)
+    };
+    let squared = far(&[]);
+    for kernel in ["huber", "cauchy", "geman-mcclure"] {
+        assert!(
+            far(&["--kernel", kernel]) < 0.5 * squared,
+            "{kernel} {} {squared}",
+            far(&["--kernel", kernel])
+        );
     }
 }
 

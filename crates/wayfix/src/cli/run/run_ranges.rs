@@ -82,6 +82,7 @@ fn check(arguments: &run_slam::Arguments) -> Result<()> {
         "runs on ranges have no parameters: noise, bias and scale come from the log"
     );
     ensure!(arguments.relations.is_none(), "--relations is for logs of scans");
+    ensure!(arguments.graph_out.is_none(), "--graph-out is for logs of range-bearing detections");
     ensure!(
         arguments.profile.is_none(),
         "--profile is for logs of range-bearing detections; noise comes from the log here"

@@ -1,4 +1,4 @@
-use std::{path::PathBuf, process::ExitCode};
+use std::{fs, path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result, ensure};
 use nalgebra::DefaultAllocator;
@@ -97,6 +97,9 @@ pub(in crate::cli) struct Arguments {
     /// Detections never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
     #[arg(long)]
     pub(in crate::cli) observability: bool,
+    /// File for the least squares problem of the batch, with the pairings of the filter: text, for logs of points.
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) graph_out: Option<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) common: Common,
 }
@@ -207,6 +210,12 @@ where
     if let Some(saver) = saver {
         saver.finish(&slam.system.save()).context("cannot save the map")?;
     }
+    if let Some(path) = &arguments.graph_out {
+        let graph = slam.smoothed.as_ref().and_then(|smoothed| smoothed.graph.as_ref());
+        let graph =
+            graph.context("there is no batch of this run: --graph-out needs points and --estimator ekf")?;
+        fs::write(path, graph).with_context(|| format!("cannot write {}", path.display()))?;
+    }
     let warnings = add_read_problems(slam.events(), read);
     let run = ReportRun {
         name: name_of(&arguments.log),
@@ -227,8 +236,11 @@ impl Arguments {
     fn check_estimator(&self) -> Result<()> {
         if self.estimator == EstimatorName::Smoother {
             ensure!(
-                self.save.is_none() && self.resume.is_none() && !self.observability,
-                "--save, --resume and --observability need --estimator ekf: the smoother has none of them yet"
+                self.save.is_none()
+                    && self.resume.is_none()
+                    && !self.observability
+                    && self.graph_out.is_none(),
+                "--save, --resume, --observability and --graph-out need --estimator ekf: the smoother has none of them yet"
             );
         }
         Ok(())
@@ -257,6 +269,7 @@ fn params(arguments: &Arguments, usual: RobotProfile) -> Result<PointSlamParams>
     };
     params.association = arguments.association.or(params.association);
     params.record_observability = arguments.observability;
+    params.record_graph = arguments.graph_out.is_some();
     params.smoothing = match arguments.estimator {
         EstimatorName::Ekf => Smoothing::Reference,
         EstimatorName::Smoother => Smoothing::FixedLag,
