@@ -1,7 +1,6 @@
 //! Stamped robot records: readers for public data sets, MCAP and folders of images, and writers for the same.
 //!
-//! [`open`] (for a log in several files, [`open_all`]) gives the records of a log of any format in time order, and a [`ReadReport`] of what could
-//! not be read:
+//! [`open`] (for a log in several files, [`open_all`]) gives the records of a log of any format in time order, and a [`ReadReport`] of what could not be read:
 //! | format | is | holds |
 //! | --- | --- | --- |
 //! | [`LogFormat::Utias`] | a folder of the UTIAS multi-robot set | velocity, detections, truth |

@@ -59,8 +59,7 @@ impl PoseKind {
 
 /// Opens the log at `path`.
 ///
-/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: file order). Every repair below is
-/// reported.
+/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: file order). Every repair below is reported.
 ///
 /// Text logs are read completely and sorted if rows go backwards. A row a minute or more from its neighbours is skipped; if the clock is set back,
 /// the longest stretch is read. CARMEN logs are read line by line, twice, and keep their order: repeated stamps are replaced, and stamps after a

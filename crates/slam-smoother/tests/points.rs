@@ -7,7 +7,7 @@
     reason = "a panic is the verdict of a test, in its helpers too"
 )]
 
-use approx::abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -140,7 +140,8 @@ fn export_has_a_line_for_each_variable_and_residual() {
     let motion: Vec<f64> = text.lines().find(|line| line.starts_with("MOTION")).map(numbers).unwrap();
     let first = steps[0].motion;
     assert_eq!(motion[2..5], [first.x(), first.y(), first.heading()]);
-    assert!((motion[5] - 1.0 / (0.0004 + 1e-8)).abs() < 1e-6 && motion.len() == 11, "{motion:?}");
+    assert_eq!(motion.len(), 11);
+    assert_abs_diff_eq!(motion[5], 1.0 / (0.0004 + 1e-8), epsilon = 1e-6);
 }
 
 #[test]

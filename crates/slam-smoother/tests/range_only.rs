@@ -105,7 +105,7 @@ fn driving_direction_turns_the_map_and_no_range_tells() {
         let (a, b) = (straight.poses[*number], askew.poses[*number]);
         let turned = start + turn.transform(&(a.translation - start));
         assert!((turned - b.translation).norm() < 0.02, "pose {number}: {turned} {}", b.translation);
-        assert!((a.heading() - b.heading()).abs() < 2e-3, "pose {number}");
+        assert_abs_diff_eq!(a.heading(), b.heading(), epsilon = 2e-3);
         let error = a.inverse().compose(&b).translation;
         let of_place = covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let nees = error.dot(&of_place.cholesky().unwrap().solve(&error));

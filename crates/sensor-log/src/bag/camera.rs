@@ -9,8 +9,7 @@ use crate::ros;
 
 /// The pinhole camera of a message.
 ///
-/// If the images are rectified (`is_rectified`), their projection is `P`, else `K`. In ROS the centre of the first pixel is at (0, 0), here
-/// at (1/2, 1/2).
+/// If the images are rectified (`is_rectified`), their projection is `P`, else `K`. In ROS the centre of the first pixel is at (0, 0), here at (1/2, 1/2).
 pub(super) fn pinhole(message: &ros::CameraInfo<'_>, is_rectified: bool) -> Result<CameraInfo, Fault> {
     let [kx, skew, cx, _, ky, cy, ..] = message.k;
     let [px, _, pcx, _, _, py, pcy, ..] = message.p;

@@ -44,8 +44,7 @@ impl EncodedImage {
 
     /// Decodes to colour: grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped.
     /// # Errors
-    /// Returns the errors of [`size`](Self::size), and an error if the pixels are damaged. A JPEG file has no checksum, so damage may only change
-    /// pixels.
+    /// Returns the errors of [`size`](Self::size), and an error if the pixels are damaged. A JPEG file has no checksum, so damage may only change pixels.
     pub fn decode_rgb(&self) -> Result<DecodedImage, ImageError> {
         let image = self.decode()?.into_rgb8();
         Ok(DecodedImage { width: image.width(), height: image.height(), pixels: image.into_raw() })

@@ -1,5 +1,4 @@
-//! Scans with their poses as one JSON object: `{"map": {"976052890.244111": {"range": […], "theta": …, "x": …, "y": …}, …}}`, with keys in
-//! seconds.
+//! Scans with their poses as one JSON object: `{"map": {"976052890.244111": {"range": […], "theta": …, "x": …, "y": …}, …}}`, with keys in seconds.
 //!
 //! The file does not state whether the poses are odometry or corrected: each gives a pose and the motion since the previous scan. The raw log of the
 //! Intel Research Lab is distributed in this form.

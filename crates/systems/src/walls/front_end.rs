@@ -2,6 +2,7 @@ use std::collections::{BTreeSet, VecDeque};
 
 use nalgebra::{Matrix3, Vector2};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
+use wayfix_evaluation::plot::ScanSample;
 use wayfix_line_extract::{LineExtractor, WallSegment};
 use wayfix_scan_match::ScanMatcher;
 use wayfix_sensor_log::{LaserScan, LogError, Record, RecordData, Stamp};
@@ -15,7 +16,6 @@ use super::{
     odometry::{Motion, OdometryBetweenScans},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
-    scan_sample::ScanSample,
 };
 use crate::{
     slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
@@ -299,7 +299,7 @@ impl WallSlamFrontEnd {
                         wall.ends[1].as_slice()
                     )
                 })?;
-                self.scan_sample.offer(&keyframe.cloud, &estimator.filter.robot().pose);
+                self.scan_sample.offer(keyframe.cloud.points(), &estimator.filter.robot().pose);
                 nis(&report)
             };
         estimator.step += stopwatch.elapsed();

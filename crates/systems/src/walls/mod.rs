@@ -10,7 +10,6 @@ mod plots;
 mod relative_motion;
 mod run;
 mod scan;
-mod scan_sample;
 mod state;
 mod truth;
 

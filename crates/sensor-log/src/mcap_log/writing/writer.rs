@@ -73,8 +73,7 @@ impl<S: FoxgloveMessageSink> FoxgloveMessageWriter<S> {
 
     /// Stores the original format of the records; reading returns it as [`LogMetadata::origin`](crate::LogMetadata::origin).
     ///
-    /// Call it before anything else is written, because streaming readers need it first. MCAP as the origin is not stored, because it is the
-    /// format of the file.
+    /// Call it before anything else is written, because streaming readers need it first. MCAP as the origin is not stored, because it is the format of the file.
     /// # Errors
     /// Returns an error if the output fails.
     pub fn origin(&mut self, origin: LogFormat) -> Result<(), LogError> {
