@@ -13,7 +13,7 @@ mod yuv;
 pub use background::BackgroundColorModel;
 pub use classify::{ColorBlob, ColorLookUpTable, PixelClassifier, find_blobs};
 pub use error::ColorModelError;
-pub use frame::{PixelSums, PrefixSumImage};
+pub use frame::{PixelSums, PrefixSumImage, TileRegion, TileSums, TiledImage};
 pub use lighting::{
     ColorDensity, ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
     LightingDrift, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker,
@@ -22,8 +22,8 @@ pub use lighting::{
 pub use likelihood::{
     CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams,
     ImageLikelihoodChoice, LightErrorCorrelation, LikelihoodFrameInput, LikelihoodModel, PixelLikelihood,
-    PixelLikelihoodFrame, PixelLikelihoodParams, PixelLikelihoodScratch, PixelSpanLikelihood,
-    PixelSumDensity, PredictedMapView, ViewOcclusionModel, gather,
+    PixelLikelihoodFrame, PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, PredictedMapView,
+    TileScratch, ViewOcclusionModel, gather,
 };
 pub use localizer::{
     CameraLocation, CameraPoseError, CameraPoseNoise, ColorLocalizer, FrameOutcome, GlobalSearchParams,

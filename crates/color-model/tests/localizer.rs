@@ -17,7 +17,7 @@ use wayfix_gaussian_core::Gaussian;
 fn params() -> LocalizerParams {
     let search = GlobalSearchParams {
         n_buffered_frames: 4,
-        n_sampled_trajectories: 600,
+        samples_per_place: 0.15,
         n_refined_places: 40,
         ..GlobalSearchParams::default()
     };
@@ -78,9 +78,8 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
         let (views, truth) = drive(&mut scene, body, 32, seed);
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
-        // Half of the default effort: coarser, the first search may miss the peak.
-        let search =
-            GlobalSearchParams { n_sampled_trajectories: 2000, n_refined_places: 80, ..params().search };
+        // With less effort the first searches may miss the peak.
+        let search = GlobalSearchParams::default();
         let params = LocalizerParams { max_particles: 500, search, ..params() };
         let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
         let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
@@ -99,7 +98,7 @@ fn blobs_instead_of_pixels_correct_a_rough_start() {
     let (views, truth) = drive(&mut scene, body, 32, 8);
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let params = LocalizerParams {
-        search: GlobalSearchParams { n_sampled_trajectories: 0, ..params().search },
+        search: GlobalSearchParams { samples_per_place: 0.0, ..params().search },
         ..params()
     };
     let models =
@@ -183,7 +182,8 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
     };
     for value in [f64::NAN, -1.0] {
         refused(&|params| params.pixels.brightness_variation = value);
-        refused(&|params| params.pixels.n_effective_pixels = value);
+        refused(&|params| params.pixels.outlier_share = value);
+        refused(&|params| params.search.samples_per_place = value);
         refused(&|params| params.odometry.relative_sigma = value);
         refused(&|params| params.camera_pose_noise.rotation_sigma = value);
         refused(&|params| params.search.search_interval = value);
@@ -191,6 +191,7 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
         refused(&|params| params.tempering_min_ess_share = value);
     }
     refused(&|params| params.max_particles = 0);
+    refused(&|params| params.pixels.tile_pixels = 0);
     refused(&|params| params.search.n_refined_places = 0);
 }
 

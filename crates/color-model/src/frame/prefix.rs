@@ -84,6 +84,12 @@ impl PrefixSumImage {
         self.width * self.height
     }
 
+    /// The sums from the start of a row up to each of its pixels; empty for a row outside the image.
+    pub(crate) fn prefix_sums(&self, row: usize) -> &[[u32; LANES]] {
+        let at = row * (self.width + 1);
+        self.prefix.get(at..at + self.width + 1).unwrap_or(&[])
+    }
+
     /// Adds pixels `start..end` of `row` to `sums`; pixels outside the image add nothing.
     #[inline]
     pub fn add_run(&self, row: usize, start: usize, end: usize, sums: &mut PixelSums) {

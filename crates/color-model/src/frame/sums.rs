@@ -38,13 +38,6 @@ impl PixelSums {
         }
     }
 
-    /// Subtracts another sum, whose pixels must all be in this one.
-    pub(crate) fn remove(&mut self, other: &Self) {
-        for (sum, lane) in self.lanes.iter_mut().zip(other.lanes) {
-            *sum -= lane;
-        }
-    }
-
     /// Number of pixels.
     pub fn count(&self) -> u64 {
         self.lanes[COUNT]
@@ -57,6 +50,12 @@ impl PixelSums {
     pub fn products(&self) -> Matrix3<f64> {
         let [yy, uu, vv, yu, yv, uv] = [3, 4, 5, 6, 7, 8].map(|lane| self.lane(lane));
         Matrix3::new(yy, yu, yv, yu, uu, uv, yv, uv, vv)
+    }
+    /// Variance of the pixels about their mean; 0 of no pixels.
+    pub(crate) fn variance(&self) -> Vector3<f64> {
+        let Some(mean) = self.mean() else { return Vector3::zeros() };
+        Vector3::new(self.lane(3), self.lane(4), self.lane(5)) / self.count() as f64
+            - mean.component_mul(&mean)
     }
     /// The mean colour; `None` of no pixels.
     pub fn mean(&self) -> Option<Vector3<f64>> {

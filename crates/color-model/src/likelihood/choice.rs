@@ -1,8 +1,8 @@
 use super::{
     FeatureLikelihood, FeatureLikelihoodParams, LikelihoodFrameInput, LikelihoodModel, PixelLikelihoodFrame,
-    PixelLikelihoodParams, PixelLikelihoodScratch, PredictedMapView,
+    PixelLikelihoodParams, PredictedMapView, TileScratch,
 };
-use crate::{ColorModelError, LightingTracker};
+use crate::{ColorModelError, LightingTracker, PixelSums};
 
 /// The likelihoods of this crate, to choose from at run time.
 ///
@@ -34,7 +34,7 @@ pub enum EitherLikelihood<P, F> {
 
 impl LikelihoodModel for ImageLikelihoodChoice {
     type Frame = EitherLikelihood<PixelLikelihoodFrame, FeatureLikelihood>;
-    type Scratch = EitherLikelihood<PixelLikelihoodScratch, FeatureLikelihood>;
+    type Scratch = EitherLikelihood<TileScratch, FeatureLikelihood>;
 
     fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<Self::Frame, ColorModelError> {
         Ok(match self {
@@ -45,9 +45,13 @@ impl LikelihoodModel for ImageLikelihoodChoice {
 
     fn scratch(&self, frame: &Self::Frame) -> Self::Scratch {
         match frame {
-            EitherLikelihood::Pixels(_) => EitherLikelihood::Pixels(PixelLikelihoodScratch::new()),
+            EitherLikelihood::Pixels(_) => EitherLikelihood::Pixels(TileScratch::default()),
             EitherLikelihood::Features(features) => EitherLikelihood::Features(features.clone()),
         }
+    }
+
+    fn mixes_lights(&self) -> bool {
+        matches!(self, Self::Pixels(pixels) if pixels.mixes_lights())
     }
 
     fn log_likelihoods<T: LightingTracker>(
@@ -57,14 +61,15 @@ impl LikelihoodModel for ImageLikelihoodChoice {
         view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
+        shown: &mut [PixelSums],
     ) {
         use EitherLikelihood::{Features, Pixels};
         match (self, frame, scratch) {
             (Self::Pixels(params), Pixels(frame), Pixels(scratch)) => {
-                params.log_likelihoods(frame, scratch, view, light, log_likelihoods);
+                params.log_likelihoods(frame, scratch, view, light, log_likelihoods, shown);
             }
             (Self::Features(params), Features(frame), Features(scratch)) => {
-                params.log_likelihoods(frame, scratch, view, light, log_likelihoods);
+                params.log_likelihoods(frame, scratch, view, light, log_likelihoods, shown);
             }
             // A frame of another likelihood says nothing.
             _ => log_likelihoods.fill(0.0),

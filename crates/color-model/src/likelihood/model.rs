@@ -6,12 +6,12 @@ use wayfix_estimation_traits::Pose3;
 
 use super::span::log_likelihood;
 use super::{
-    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, JointLikelihood, LightErrorCorrelation,
-    PixelLikelihoodParams, PixelSumDensity,
+    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, LightErrorCorrelation, LightOfTiles,
+    PixelLikelihoodParams, PixelSumDensity, TileLight, TileLikelihood,
 };
 use crate::{
     BackgroundColorModel, ColorDensity, ColorModelError, LightingTracker, PixelClassifier, PixelSums,
-    YuvImage,
+    TileSums, TiledImage, YuvImage,
 };
 
 /// A likelihood that the localizer accepts: of a frame, from any camera pose, under each light of a tracker.
@@ -32,7 +32,14 @@ pub trait LikelihoodModel: Send + Sync {
     /// Working memory for one thread.
     fn scratch(&self, frame: &Self::Frame) -> Self::Scratch;
 
+    /// Whether a part of an image may be in the shade.
+    fn mixes_lights(&self) -> bool {
+        false
+    }
+
     /// $`\ln p(z | x, θ_j) - \ln p_{bg}(z)`$ under each light $`j`$ of `light`, in nats. [Schulz & Fox 2004, Eq. 16]
+    ///
+    /// `shown` takes the pixels of each colour in each light: all colours of the first light, then those of the next. It is empty before.
     fn log_likelihoods<T: LightingTracker>(
         &self,
         frame: &Self::Frame,
@@ -40,6 +47,7 @@ pub trait LikelihoodModel: Send + Sync {
         view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
+        shown: &mut [PixelSums],
     );
 }
 
@@ -63,14 +71,15 @@ pub struct LikelihoodFrameInput<'a> {
 pub struct PredictedMapView<'a> {
     /// Pose of the camera in the world.
     pub camera_pose: &'a Pose3<f64>,
-    /// Sums of the pixels of each colour.
-    pub sums: &'a [PixelSums],
+    /// The image.
+    pub image: &'a TiledImage,
+    /// Sums of the pixels of each colour in each tile.
+    pub tiles: &'a TileSums,
 }
 
 /// Frame of the pixel likelihood.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelLikelihoodFrame {
-    pub(crate) n_pixels: usize,
     pub(crate) pixel_color_variance: Vector3<f64>,
     pub(crate) mean_color_variance: Vector3<f64>,
 }
@@ -78,50 +87,86 @@ pub struct PixelLikelihoodFrame {
 /// The pixel product, from the sums of spans.
 impl LikelihoodModel for PixelLikelihoodParams {
     type Frame = PixelLikelihoodFrame;
-    type Scratch = PixelLikelihoodScratch;
+    type Scratch = TileScratch;
 
     fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<PixelLikelihoodFrame, ColorModelError> {
-        let LikelihoodFrameInput { image, pixel_color_variance, mean_color_variance, .. } = *context;
-        Ok(PixelLikelihoodFrame { n_pixels: image.pixels().len(), pixel_color_variance, mean_color_variance })
+        let LikelihoodFrameInput { pixel_color_variance, mean_color_variance, .. } = *context;
+        Ok(PixelLikelihoodFrame { pixel_color_variance, mean_color_variance })
     }
 
-    fn scratch(&self, _frame: &PixelLikelihoodFrame) -> PixelLikelihoodScratch {
-        PixelLikelihoodScratch::new()
+    fn scratch(&self, _frame: &PixelLikelihoodFrame) -> TileScratch {
+        TileScratch::default()
+    }
+
+    fn mixes_lights(&self) -> bool {
+        self.light_error_correlation == LightErrorCorrelation::Tile
     }
 
     fn log_likelihoods<T: LightingTracker>(
         &self,
         frame: &PixelLikelihoodFrame,
-        PixelLikelihoodScratch(joint): &mut PixelLikelihoodScratch,
+        scratch: &mut TileScratch,
         view: &PredictedMapView<'_>,
         light: &T,
         log_likelihoods: &mut [f64],
+        shown: &mut [PixelSums],
     ) {
-        let PixelLikelihoodFrame { n_pixels, pixel_color_variance, mean_color_variance } = frame;
-        if self.light_error_correlation == LightErrorCorrelation::Common {
-            joint.set_sums(view.sums, self, pixel_color_variance, *n_pixels);
-        }
-        for (at, value) in log_likelihoods.iter_mut().enumerate() {
-            let belief = if self.light_error_correlation == LightErrorCorrelation::Common {
-                light.joint_belief(at)
-            } else {
-                None
-            };
-            *value = match belief {
-                Some(belief) => joint.log_likelihood(belief, mean_color_variance),
-                None => self.independent(view.sums, light, at, *n_pixels).unwrap_or(f64::NEG_INFINITY),
-            };
+        if self.mixes_lights() {
+            let n_lights = log_likelihoods.len();
+            scratch.lights.clear();
+            for at in 0..n_lights {
+                match TileLight::new(light, at, self, &frame.pixel_color_variance) {
+                    Ok(light) => scratch.lights.push(light),
+                    Err(_) => return log_likelihoods.fill(f64::NEG_INFINITY),
+                }
+            }
+            let TileScratch { tiles, lights } = scratch;
+            tiles.clear();
+            tiles.add_tiles(view.image, view.tiles.regions(), 1.0);
+            tiles.weigh(lights);
+            for (at, value) in log_likelihoods.iter_mut().enumerate() {
+                // A shade never shines alone.
+                if light.light_probability(at) == 0.0 {
+                    *value = f64::NEG_INFINITY;
+                    continue;
+                }
+                let in_light = LightOfTiles { light: at, shade: light.shade_of(at), n_lights };
+                let n_tiles = tiles.n_tiles();
+                let (log, is_shaded) = tiles.log_likelihood(view.image, in_light, 0..n_tiles, self);
+                *value = log;
+                let in_light = LightOfTiles { shade: in_light.shade.filter(|_| is_shaded), ..in_light };
+                tiles.show(view.tiles.regions(), in_light, self, shown);
+            }
+        } else {
+            show_to_all(view.tiles, log_likelihoods.len(), shown);
+            for (at, (value, sums)) in log_likelihoods.iter_mut().zip(per_light(shown, light)).enumerate() {
+                *value = self.independent(sums, light, at).unwrap_or(f64::NEG_INFINITY);
+            }
         }
     }
 }
 
 /// Working memory of [`PixelLikelihoodParams`] as a [`LikelihoodModel`].
-pub struct PixelLikelihoodScratch(pub(crate) JointLikelihood);
+#[derive(Default)]
+pub struct TileScratch {
+    tiles: TileLikelihood,
+    lights: Vec<TileLight>,
+}
 
-impl PixelLikelihoodScratch {
-    pub(crate) fn new() -> Self {
-        Self(JointLikelihood::new())
+/// Adds all pixels to every light.
+fn show_to_all(tiles: &TileSums, n_lights: usize, shown: &mut [PixelSums]) {
+    let Some(n_colors) = shown.len().checked_div(n_lights) else { return };
+    for sums in shown.chunks_exact_mut(n_colors.max(1)) {
+        tiles.regions().for_each(|region| sums[region.color].add(&region.sums));
     }
+}
+
+/// The sums under each light.
+fn per_light<'a>(
+    shown: &'a [PixelSums],
+    light: &impl LightingTracker,
+) -> impl Iterator<Item = &'a [PixelSums]> {
+    shown.chunks_exact((shown.len() / light.n_lights().max(1)).max(1))
 }
 
 impl PixelLikelihoodParams {
@@ -131,14 +176,13 @@ impl PixelLikelihoodParams {
         sums: &[PixelSums],
         light: &impl LightingTracker,
         at: usize,
-        n_pixels: usize,
     ) -> Result<f64, ColorModelError> {
         let densities = self
             .shaded(light.colors_in(at)?)
             .iter()
             .map(PixelSumDensity::new)
             .collect::<Result<Vec<_>, _>>()?;
-        Ok(log_likelihood(sums, &densities, self, n_pixels))
+        Ok(log_likelihood(sums, &densities, self))
     }
 }
 
@@ -165,7 +209,9 @@ impl LikelihoodModel for FeatureLikelihoodParams {
         view: &PredictedMapView<'_>,
         _light: &T,
         log_likelihoods: &mut [f64],
+        shown: &mut [PixelSums],
     ) {
+        show_to_all(view.tiles, log_likelihoods.len(), shown);
         log_likelihoods.fill(scratch.log_likelihood(view.camera_pose, &[]));
     }
 }

@@ -7,9 +7,10 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LightErrorCorrelation {
-    /// All pixels of an image share one light: its uncertainty counts once.
+    /// The pixels of a tile share a light, which is one of the bank: sun and shade may lie on one carpet.
     #[default]
-    Common,
+    #[cfg_attr(feature = "serde", serde(alias = "common"))]
+    Tile,
     /// Pixels are independent, as in [Schulz & Fox 2004, Eqs. 9, 16]: the uncertainty of the light counts for every pixel.
     Each,
 }
@@ -25,11 +26,11 @@ pub enum LightErrorCorrelation {
 pub struct PixelLikelihoodParams {
     /// Whether the pixels of an image share the unknown light.
     pub light_error_correlation: LightErrorCorrelation,
-    /// Number of independent observations in an image; log-likelihoods are multiplied by this over the number of pixels. Neighbouring
-    /// pixels share shade, blur and label errors. Default 60: areas of 20 × 20 pixels in an image of 208 × 160.
-    pub n_effective_pixels: f64,
-    /// Prior probability that an unmapped object hides a pixel of the map. Such a pixel counts the logarithm of this share, at any pose, and no colour counts less on
-    /// average. Default 0.3.
+    /// Side of a tile, pixels. The pixels of one colour in a tile share shade, blur and label errors, and count as one observation. Default 16: the
+    /// edge of a shadow crosses few tiles, and landmarks have tiles of their own.
+    pub tile_pixels: u16,
+    /// Prior probability that a tile shows something that is not on the map. Such a tile counts the logarithm of this share, at any pose. Default 0.1: a person or
+    /// a ball covers about a tenth of a view.
     pub outlier_share: f64,
     /// Standard deviation of the illumination over the field and over an image, as a share of the light. Default 0.12: vignetting and shade.
     pub brightness_variation: f64,
@@ -40,9 +41,9 @@ pub struct PixelLikelihoodParams {
 impl Default for PixelLikelihoodParams {
     fn default() -> Self {
         Self {
-            light_error_correlation: LightErrorCorrelation::Common,
-            n_effective_pixels: 60.0,
-            outlier_share: 0.3,
+            light_error_correlation: LightErrorCorrelation::Tile,
+            tile_pixels: 16,
+            outlier_share: 0.1,
             brightness_variation: 0.12,
             edge_margin_pixels: 1,
         }
@@ -77,7 +78,7 @@ impl PixelLikelihoodParams {
     pub fn as_published() -> Self {
         Self {
             light_error_correlation: LightErrorCorrelation::Each,
-            n_effective_pixels: f64::INFINITY,
+            tile_pixels: Self::default().tile_pixels,
             outlier_share: f64::MIN_POSITIVE,
             brightness_variation: 0.0,
             edge_margin_pixels: 0,
@@ -114,9 +115,9 @@ impl PixelLikelihoodParams {
         let check = |what, value, is_within: bool| {
             if is_within { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
         };
-        let Self { n_effective_pixels, outlier_share, brightness_variation, .. } = *self;
-        check("number of effective pixels", n_effective_pixels, n_effective_pixels > 0.0)?;
-        check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share <= 1.0)?;
+        let Self { tile_pixels, outlier_share, brightness_variation, .. } = *self;
+        check("side of a tile (pixels)", f64::from(tile_pixels), tile_pixels > 0)?;
+        check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share < 1.0)?;
         check(
             "brightness variation",
             brightness_variation,
@@ -124,19 +125,14 @@ impl PixelLikelihoodParams {
         )
     }
 
-    /// The exponent of a pixel's likelihood, at most 1.
-    pub(crate) fn tempering(&self, n_pixels: usize) -> f64 {
-        (self.n_effective_pixels / n_pixels.max(1) as f64).min(1.0)
-    }
-
-    /// $`\sum_m \max(n_m \ln ε,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$, tempered.
-    pub(crate) fn log_likelihood(&self, n_pixels: usize, regions: impl Iterator<Item = Region>) -> f64 {
+    /// $`\sum_m \max(n_m \ln ε,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$.
+    pub(crate) fn log_likelihood(&self, regions: impl Iterator<Item = Region>) -> f64 {
         let log_outlier = self.outlier_share.ln();
         let log_ratio = |region: Region| {
             let n = region.count + region.n_outliers;
             let log_ratio = region.log_density + region.background + log_outlier * region.n_outliers;
             if n > 0.0 { log_ratio.max(log_outlier * n) } else { 0.0 }
         };
-        regions.map(log_ratio).sum::<f64>() * self.tempering(n_pixels)
+        regions.map(log_ratio).sum()
     }
 }

@@ -63,7 +63,7 @@ impl CameraPoseLikelihood for PixelLikelihood<'_> {
                 None => region.n_outliers += 1.0,
             }
         }
-        self.params.log_likelihood(self.image.pixels().len(), regions.into_iter())
+        self.params.log_likelihood(regions.into_iter())
     }
 }
 

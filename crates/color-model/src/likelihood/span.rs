@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LogWeight, Pose3};
 use super::{
     CameraPoseLikelihood, PixelLikelihoodParams, PixelSumDensity, params::Region, pixel::check_size,
 };
-use crate::{ColorDensity, ColorModelError, PixelSums, PrefixSumImage};
+use crate::{ColorDensity, ColorModelError, PixelSums, PrefixSumImage, TileSums, TiledImage};
 
 /// Sums the pixels of each colour where the projected map at `camera_pose` shows it, without the pixels within `edge_margin_pixels` of an edge.
 ///
@@ -28,6 +28,27 @@ pub fn gather<'a>(
         0 => projector.spans(camera_pose, &mut add),
         margin => projector.inner_spans(camera_pose, margin, &mut add),
     }
+}
+
+/// [`gather`] for each tile of the image.
+pub(crate) fn gather_tiles(
+    projector: &mut MapRenderer,
+    frame: &TiledImage,
+    camera_pose: &Pose3<f64>,
+    edge_margin: u16,
+    tiles: &mut TileSums,
+) -> Result<(), RenderError> {
+    tiles.clear();
+    let mut add = |span: PixelSpan| {
+        let run = (usize::from(span.row), usize::from(span.start), usize::from(span.end));
+        tiles.add_run(frame, run, span.color.index());
+    };
+    match edge_margin {
+        0 => projector.spans(camera_pose, &mut add)?,
+        margin => projector.inner_spans(camera_pose, margin, &mut add)?,
+    }
+    tiles.add_covered_rows(frame);
+    Ok(())
 }
 
 /// The pixel likelihood computed from spans, equal to [`PixelLikelihood`](crate::PixelLikelihood).
@@ -65,7 +86,7 @@ impl CameraPoseLikelihood for PixelSpanLikelihood<'_> {
         };
         let margin = self.params.edge_margin_pixels;
         match gather(&mut self.projector, |_| Some(self.frame), camera_pose, margin, &mut self.sums) {
-            Ok(()) => log_likelihood(&self.sums, &light, &self.params, self.frame.n_pixels()),
+            Ok(()) => log_likelihood(&self.sums, &light, &self.params),
             Err(_) => f64::NEG_INFINITY,
         }
     }
@@ -76,8 +97,7 @@ pub(crate) fn log_likelihood(
     sums: &[PixelSums],
     light: &[PixelSumDensity],
     params: &PixelLikelihoodParams,
-    n_pixels: usize,
 ) -> LogWeight {
     let region = |(sums, density): (&PixelSums, &PixelSumDensity)| Region::new(sums, density.sum_log(sums));
-    params.log_likelihood(n_pixels, sums.iter().zip(light).map(region))
+    params.log_likelihood(sums.iter().zip(light).map(region))
 }

@@ -64,6 +64,11 @@ impl ImageHistogram {
         histogram
     }
 
+    /// Widths of its cells.
+    pub(crate) fn widths(&self) -> &Vector3<f64> {
+        &self.widths
+    }
+
     /// $`-\ln p_{bg}(c)`$, in nats.
     pub(crate) fn nats(&self, pixel: [u8; 3]) -> f64 {
         let count = self.index(pixel).map_or(0.0, |at| f64::from(self.counts[at]));

@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use wayfix_estimation_traits::{LogWeight, Pose3};
+use wayfix_estimation_traits::Pose3;
 
 use super::odometry::OdometryDelta;
 use crate::YuvImage;
@@ -12,8 +12,6 @@ pub(crate) struct BufferedFrame {
     pub(crate) image: YuvImage,
     pub(crate) mount: Pose3<f64>,
     pub(crate) odometry: OdometryDelta,
-    /// Log-likelihood of the frame at the most probable place, nats.
-    pub(crate) log_evidence: LogWeight,
 }
 
 impl BufferedFrame {
@@ -36,11 +34,6 @@ impl FrameBuffer {
         while self.0.len() > capacity {
             self.0.pop_front();
         }
-    }
-
-    /// Another place is the most probable one: what the frames say of it is not known.
-    pub(crate) fn forget_evidence(&mut self) {
-        self.0.iter_mut().for_each(|frame| frame.log_evidence = f64::NEG_INFINITY);
     }
 
     /// The newest frame.

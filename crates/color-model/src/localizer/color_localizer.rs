@@ -14,12 +14,11 @@ use super::{
     filter::ColorFilter,
     frame::{PreparedFrame, Scene, check_frame},
     odometry::OdometryDelta,
-    search::{Found, Search},
-    start::Area,
+    search::{Area, Found, Search},
 };
 use crate::{
-    BackgroundColorModel, ColorDensity, ColorModelError, LightingFilterBank, LightingTracker,
-    LikelihoodModel, PixelLikelihoodParams, YuvImage,
+    BackgroundColorModel, ColorModelError, LightingFilterBank, LightingTracker, LikelihoodModel,
+    PixelLikelihoodParams, YuvImage, lighting::SunAndShade,
 };
 
 /// Probability of a place from which on it is tracked.
@@ -68,20 +67,20 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     likelihood: L,
     start: StartPosePrior,
     /// The light before the first frame.
-    prior: Arc<T>,
+    prior: Arc<SunAndShade<T>>,
     /// The most probable place.
-    present: ColorFilter<T>,
-    relocalization: RelocalizationTest<ColorFilter<T>>,
+    present: ColorFilter<SunAndShade<T>>,
+    relocalization: RelocalizationTest<ColorFilter<SunAndShade<T>>>,
     /// Since the last frame.
     delta: OdometryDelta,
     buffer: FrameBuffer,
     /// The light of the most probable place before each frame of the buffer.
-    lights: VecDeque<Arc<T>>,
+    lights: VecDeque<Arc<SunAndShade<T>>>,
     n_updates: usize,
     /// Since the last search, s.
     since_search: f64,
-    /// Log-likelihood ratios of the last frames to the background at the estimate, nats.
-    log_ratios: VecDeque<f64>,
+    /// Log-likelihood ratios of the last frames to the background at the estimate, nats, and what each frame adds to the one before.
+    log_ratios: VecDeque<(f64, f64)>,
 }
 
 impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
@@ -125,7 +124,7 @@ where
             return Err(ColorModelError::Dimension { what: "colours of the light", expected, got });
         }
         let area = Area::of(&map)?;
-        let prior = Arc::new(light);
+        let prior = Arc::new(SunAndShade::new(light, likelihood.mixes_lights()));
         let location =
             |_| CameraLocation { body: start.draw(&area, rng), error: params.camera_pose_noise.sample(rng) };
         Ok(Self {
@@ -162,7 +161,7 @@ where
 
     /// The light of the heaviest particle.
     pub fn light(&self) -> &T {
-        self.present.light().unwrap_or(&self.prior)
+        &self.present.light().unwrap_or(&self.prior).sun
     }
 
     /// Moves every particle by the odometry and its noise. The motions since the last frame add up.
@@ -207,53 +206,50 @@ where
     ) -> Result<FrameOutcome, ColorModelError> {
         check_frame(&self.camera, image, mount)?;
         let scene = self.scene(&self.likelihood);
-        let frame = PreparedFrame::new(&scene, image, mount, &self.colors()?)?;
+        let frame = PreparedFrame::new(&scene, image, mount, &self.light().colors()?)?;
         let light_before = self.present.light().unwrap_or(&self.prior).clone();
         let mut present = self.present.clone();
         self.step(&mut present, &frame, rng)?;
 
-        let newest = BufferedFrame {
-            image: image.clone(),
-            mount: *mount,
-            odometry: self.delta,
-            log_evidence: present.weighing.log_evidence,
-        };
+        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry: self.delta };
+        let share =
+            self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(&newest)));
         let mut relocalization = self.relocalization.clone();
-        self.test_alternatives(&mut relocalization, &frame, &newest, rng)?;
+        let log_evidence = present.weighing.log_evidence;
+        self.test_alternatives(&mut relocalization, &frame, (share, log_evidence), rng)?;
         let mut buffer = self.buffer.clone();
         buffer.push(newest, self.params.search.n_buffered_frames);
         let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
         if relocalization.decide(&mut present) {
             present.set_max_particles(self.params.max_particles);
-            buffer.forget_evidence();
         }
         self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
         (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
-        self.remember_frame(light_before);
+        self.remember_frame(light_before, share);
         self.outcome()
     }
 
     /// Compares the alternatives with the present place by the frame.
     fn test_alternatives<R: Rng + ?Sized>(
         &self,
-        relocalization: &mut RelocalizationTest<ColorFilter<T>>,
+        relocalization: &mut RelocalizationTest<ColorFilter<SunAndShade<T>>>,
         frame: &PreparedFrame<'_, L>,
-        newest: &BufferedFrame,
+        (share, log_evidence_here): (f64, f64),
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
-        let share = self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(newest)));
-        let log_evidence = |alternative: &mut ColorFilter<T>| match self.step(alternative, frame, rng) {
-            Ok(()) => share * alternative.weighing.log_evidence,
-            Err(_) => f64::NEG_INFINITY,
-        };
-        Ok(relocalization.observe(share * newest.log_evidence, log_evidence)?)
+        let log_evidence =
+            |alternative: &mut ColorFilter<SunAndShade<T>>| match self.step(alternative, frame, rng) {
+                Ok(()) => share * alternative.weighing.log_evidence,
+                Err(_) => f64::NEG_INFINITY,
+            };
+        Ok(relocalization.observe(share * log_evidence_here, log_evidence)?)
     }
 
     /// Counts the frame; keeps its light and its evidence for the map as long as the buffer keeps the frame.
-    fn remember_frame(&mut self, light_before: Arc<T>) {
+    fn remember_frame(&mut self, light_before: Arc<SunAndShade<T>>, share: f64) {
         self.n_updates += 1;
         self.delta = OdometryDelta::default();
-        self.log_ratios.push_back(self.present.weighing.mean_log_likelihood);
+        self.log_ratios.push_back((self.present.weighing.mean_log_likelihood, share));
         self.lights.push_back(light_before);
         let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_buffered_frames);
         self.log_ratios.drain(..n_old);
@@ -263,7 +259,7 @@ where
     /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
     fn step<R: Rng + ?Sized>(
         &self,
-        filter: &mut ColorFilter<T>,
+        filter: &mut ColorFilter<SunAndShade<T>>,
         frame: &PreparedFrame<'_, L>,
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
@@ -278,8 +274,8 @@ where
     fn propose_places<R: Rng + ?Sized>(
         &self,
         buffer: &FrameBuffer,
-        present: &mut ColorFilter<T>,
-        relocalization: &mut RelocalizationTest<ColorFilter<T>>,
+        present: &mut ColorFilter<SunAndShade<T>>,
+        relocalization: &mut RelocalizationTest<ColorFilter<SunAndShade<T>>>,
         rng: &mut R,
     ) -> Result<bool, ColorModelError> {
         let params = &self.params.search;
@@ -288,46 +284,46 @@ where
         let is_due = n_frames > params.n_buffered_frames
             && self.since_search + self.delta.seconds >= params.search_interval;
         let is_on = !self.params.relocalization.is_off();
-        if params.n_sampled_trajectories == 0 || !(is_start || (is_due && is_on)) {
+        if params.samples_per_place == 0.0 || !(is_start || (is_due && is_on)) {
             return Ok(false);
         }
         let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
         let frames = buffer.spaced(params.n_buffered_frames.div_ceil(2));
-        let shares = frames.windows(2).map(|pair| self.independent_share(pair[0].view_change(&pair[1])));
-        let share = (1.0 + shares.sum::<f64>()) / frames.len().max(1) as f64; // the first frame is new
-        let tracked: f64 = frames.iter().map(|frame| frame.log_evidence).sum();
+        // Once the view has turned by a tile, its tiles show something else.
+        let tile = f64::from(self.params.pixels.tile_pixels) / self.camera.fx();
+        let shares = frames.windows(2).map(|pair| (pair[0].view_change(&pair[1]) / tile).min(1.0));
+        let shares = std::iter::once(1.0).chain(shares).collect();
         let search = Search::new(
-            self.scene(&self.params.pixels),
+            self.scene(&()),
             (&self.area, start),
             &self.params,
             [&self.prior, self.lights.front().unwrap_or(&self.prior)],
-            frames,
+            (frames, shares),
         )?;
-        let here = if is_first { None } else { Some(*present.estimate()?.pose.mean()) };
+        let here =
+            |pose: PoseEstimate| CameraLocation { body: *pose.pose.mean(), error: present.camera_error() };
+        let here = if is_first { None } else { Some(here(present.estimate()?)) };
         let mut found = search.run(here, rng)?;
         let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
         if is_start {
             let best = found.remove(0);
             *present = best.filter;
             present.set_max_particles(self.params.max_particles);
-            let even =
-                found.into_iter().map(|one| (one.filter, share * (one.log_evidence - best.log_evidence)));
+            let even = found.into_iter().map(|one| (one.filter, one.log_evidence - best.log_evidence));
             relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;
-        } else if let Some((place, refined)) = known {
-            // Particles and search give lower bounds of the evidence of the present place.
-            let log_evidence = tracked.max(refined);
-            let is_tracked = |one: &Found<T>| {
+        } else if let Some((place, log_evidence)) = known {
+            let is_tracked = |one: &Found<SunAndShade<T>>| {
                 let others =
                     relocalization.alternatives().iter().filter_map(|other| other.hypothesis.estimate().ok());
                 is_same_place(&place, &one.place)
                     || others.into_iter().any(|other| is_same_place(other.pose.mean(), &one.place))
             };
             found.retain(|one| !is_tracked(one) && one.log_evidence > log_evidence);
-            let prior = 1.0 / self.n_places();
+            let prior = 1.0 / self.area.n_places() as f64;
             relocalization.propose(found.into_iter().map(|one| RelocalizationCandidate {
                 hypothesis: one.filter,
                 prior,
-                log_likelihood_ratio: share * (one.log_evidence - log_evidence),
+                log_likelihood_ratio: one.log_evidence - log_evidence,
             }))?;
         }
         Ok(true)
@@ -339,18 +335,6 @@ where
         let half = f64::from(self.camera.height()) / 2.0;
         let field_of_view = 2.0 * (half / self.camera.fy()).atan();
         (angle / field_of_view).min(1.0)
-    }
-
-    /// Number of distinguishable places on the map: of cells of the size of a place.
-    fn n_places(&self) -> f64 {
-        (self.area.size() * std::f64::consts::TAU / PLACE_RADIUS.powi(3)).max(1.0)
-    }
-
-    /// Densities of all colours under each light of the most probable place and of its alternatives.
-    fn colors(&self) -> Result<Vec<Vec<ColorDensity>>, ColorModelError> {
-        let alternatives = self.relocalization.alternatives().iter().map(|one| &one.hypothesis);
-        let lights = std::iter::once(&self.present).chain(alternatives).filter_map(ColorFilter::light);
-        lights.flat_map(|light| (0..light.n_lights()).map(|at| light.colors_in(at))).collect()
     }
 
     fn scene<'a, K>(&'a self, likelihood: &'a K) -> Scene<'a, K> {
@@ -365,17 +349,19 @@ where
     }
 
     fn outcome(&self) -> Result<FrameOutcome, ColorModelError> {
-        let (weighing, pixels) = (&self.present.weighing, &self.params.pixels);
+        let weighing = &self.present.weighing;
         let alternative_probability = self.relocalization.probability();
         let estimate = self.present.estimate()?;
         let share = estimate.share * (1.0 - alternative_probability);
-        let per_pixel =
-            1.0 / pixels.n_effective_pixels.min(f64::from(self.camera.width() * self.camera.height()));
+        let per_tile = 1.0 / weighing.n_tiles as f64;
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
         let n_frames = self.params.search.n_buffered_frames;
-        // At even odds, the frames tell the map at the estimate from the background.
-        let odds = TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
-        let is_explained = self.log_ratios.iter().sum::<f64>() > odds.ln();
+        // At even odds, the frames tell the map at the estimate, one of all places, from the background.
+        let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
+        let mean =
+            self.log_ratios.iter().map(|(log, _)| log).sum::<f64>() / self.log_ratios.len().max(1) as f64;
+        let n_independent = 1.0 + self.log_ratios.iter().skip(1).map(|(_, share)| share).sum::<f64>();
+        let is_explained = n_independent * mean > odds.ln();
         let status = match (self.n_updates >= n_frames, is_explained) {
             (true, false) => LocalizationStatus::Lost,
             (true, true) if share > TRACKING_PROBABILITY && is_narrow => LocalizationStatus::Tracking,
@@ -388,10 +374,10 @@ where
             effective_particles: weighing.effective_particles,
             n_particles: self.present.n_particles(),
             n_hypotheses: 1 + self.relocalization.alternatives().len(),
-            log_evidence_per_pixel: weighing.log_evidence * per_pixel,
-            fit: weighing.mean_log_likelihood * per_pixel,
+            log_evidence_per_pixel: weighing.log_evidence * per_tile,
+            fit: weighing.mean_log_likelihood * per_tile,
             alternative_probability,
-            light_probabilities: weighing.light_probabilities.clone(),
+            light_probabilities: weighing.light_probabilities[..self.prior.sun.n_lights()].to_vec(),
         })
     }
 }

@@ -9,7 +9,7 @@ use wayfix_particle::{
 
 use super::{
     LocalizerParams, PoseEstimate,
-    camera::CameraLocation,
+    camera::{CameraLocation, CameraPoseError},
     estimate::{PLACE_RADIUS, dominant_cluster},
     frame::PreparedFrame,
 };
@@ -21,7 +21,7 @@ use crate::{
 #[derive(Clone)]
 pub(crate) struct ColorParticle<T> {
     pub(crate) state: RaoBlackwellParticle<CameraLocation, T>,
-    /// Of every colour.
+    /// Of every colour in the first light, then in the next. Lights that the frame does not show have none.
     sums: Vec<PixelSums>,
     /// The light drawn.
     light: usize,
@@ -51,6 +51,8 @@ pub(crate) struct Weighing {
     /// Exponent of the likelihoods, at most 1.
     pub(crate) tempering: f64,
     pub(crate) effective_particles: f64,
+    /// Number of tiles of the frame.
+    pub(crate) n_tiles: usize,
     /// Probability of each light.
     pub(crate) light_probabilities: Vec<f64>,
 }
@@ -74,6 +76,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             mean_log_likelihood: 0.0,
             tempering: 1.0,
             effective_particles: particles.len() as f64,
+            n_tiles: 1,
             light_probabilities: (0..light.n_lights()).map(|at| light.light_probability(at)).collect(),
         };
         Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
@@ -117,9 +120,14 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             location.error = params.camera_pose_noise.after(&location.error, seconds, rng);
             let light = particle.state.conditional();
             values.resize(light.n_lights(), 0.0);
-            particle.sums.resize(frame.n_colors(), PixelSums::default());
+            particle.sums.resize(light.n_lights() * frame.n_colors(), PixelSums::default());
             frame.view(scratch, &particle.state.sampled, light, &mut particle.sums, values);
             (particle.light, particle.log_likelihood) = draw_light(light, values, rng.random());
+            let shade = light.shade_of(particle.light);
+            let others = particle.sums.chunks_exact_mut(frame.n_colors()).enumerate();
+            others
+                .filter(|(at, _)| *at != particle.light && Some(*at) != shade)
+                .for_each(|(_, sums)| sums.fill(PixelSums::default()));
         };
         set.propagate_with(|| (frame.scratch(), Vec::new()), weigh, rng);
         self.particles = set.states().to_vec();
@@ -133,12 +141,12 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         let n_lights = self.particles.first().map_or(0, |particle| particle.state.conditional().n_lights());
         let mut light_probabilities = vec![0.0; n_lights];
         let mut mean_log_likelihood = 0.0;
+        // The worst that a frame can count.
+        let least = params.pixels.outlier_share.ln() * frame.n_tiles() as f64;
         for (particle, weight) in
             self.particles.iter().zip(weights.as_slice()).filter(|(_, weight)| **weight > 0.0)
         {
             light_probabilities[particle.light] += weight;
-            // The worst that a frame can count.
-            let least = params.pixels.outlier_share.ln() * params.pixels.n_effective_pixels;
             mean_log_likelihood += weight * particle.log_likelihood.max(least);
         }
         let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
@@ -148,6 +156,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             mean_log_likelihood,
             tempering,
             effective_particles: weights.effective_sample_size(),
+            n_tiles: frame.n_tiles(),
             light_probabilities,
         };
         self.weights = weights;
@@ -184,6 +193,18 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         dominant_cluster(&self.poses().collect::<Vec<_>>()).ok_or(ColorModelError::NoPose)
     }
 
+    /// Mean error of the camera.
+    pub(crate) fn camera_error(&self) -> CameraPoseError {
+        let weighted = self.particles.iter().zip(self.weights.as_slice());
+        weighted.fold(CameraPoseError::default(), |mean, (particle, weight)| {
+            let error = &particle.state.sampled.error;
+            CameraPoseError {
+                rotation: mean.rotation + error.rotation * *weight,
+                height: mean.height + error.height * weight,
+            }
+        })
+    }
+
     /// Body poses with weights.
     pub(crate) fn poses(&self) -> impl Iterator<Item = (Pose2<f64>, f64)> {
         let bodies = self.particles.iter().map(|particle| particle.state.sampled.body);
@@ -208,16 +229,32 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
 impl<T: LightingTracker + Clone> ColorParticle<T> {
     /// A tracker that refuses the means stays as it is.
     fn update_lighting(&mut self, params: &LocalizerParams) {
-        let means = color_means(&self.sums, params);
         let mut light = self.state.conditional().clone();
-        if light.update_in(self.light, &means).is_ok() {
-            self.state.set_conditional(Arc::new(light));
-        }
+        update_lights(&mut light, self.light, &self.sums, params);
+        self.state.set_conditional(Arc::new(light));
     }
 }
 
+/// Updates every light with the means of the colours in it, the `dominant` one last, which makes it the active one. A tracker that refuses the means stays as it is.
+pub(crate) fn update_lights<T: LightingTracker>(
+    light: &mut T,
+    dominant: usize,
+    sums: &[PixelSums],
+    params: &LocalizerParams,
+) {
+    let n_colors = sums.len() / light.n_lights().max(1);
+    let means = |at: usize| color_means(&sums[at * n_colors..(at + 1) * n_colors], params);
+    for at in (0..light.n_lights()).filter(|at| *at != dominant) {
+        let means = means(at);
+        if means.seen().next().is_some() {
+            let _ = light.update_in(at, &means);
+        }
+    }
+    let _ = light.update_in(dominant, &means(dominant));
+}
+
 /// The mean colour of each region of at least `min_pixels`, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3].
-pub(crate) fn color_means(sums: &[PixelSums], params: &LocalizerParams) -> ColorMeans {
+fn color_means(sums: &[PixelSums], params: &LocalizerParams) -> ColorMeans {
     let mean = |(color, sums): (usize, &PixelSums)| {
         let is_used = sums.count() >= params.min_pixels.max(1) && params.withheld_color != Some(color);
         (if is_used { sums.mean() } else { None }, sums.count())

@@ -8,7 +8,7 @@ use crate::{ColorModelError, PixelLikelihoodParams, ViewOcclusionModel};
 /// ```
 /// use wayfix_color_model::LocalizerParams;
 /// let published = LocalizerParams::as_published();
-/// assert!(published.relocalization.is_off() && published.search.n_sampled_trajectories == 0);
+/// assert!(published.relocalization.is_off() && published.search.samples_per_place == 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -52,9 +52,9 @@ pub struct GlobalSearchParams {
     /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
     /// Default 16.
     pub n_buffered_frames: usize,
-    /// Number of trajectories drawn; 0 never searches. Default 4000: one for each 0.3 m × 0.3 m × 0.3 rad of a field of 4 × 3 m, about.
-    pub n_sampled_trajectories: usize,
-    /// Number of places that are refined at first; it is halved three times. Default 100.
+    /// Number of trajectories drawn for each 0.3 m × 0.3 m × 0.3 rad of the map; 0 never searches. Default 1: within that distance the likelihood has one peak.
+    pub samples_per_place: f64,
+    /// Number of places that are refined at first; a quarter of them is kept after each of three rounds. Default 800.
     pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_first_round_moves: u32,
@@ -66,8 +66,8 @@ impl Default for GlobalSearchParams {
     fn default() -> Self {
         Self {
             n_buffered_frames: 16,
-            n_sampled_trajectories: 4000,
-            n_refined_places: 100,
+            samples_per_place: 1.0,
+            n_refined_places: 800,
             n_first_round_moves: 10,
             search_interval: 1.0,
         }
@@ -98,7 +98,7 @@ impl LocalizerParams {
     pub fn as_published() -> Self {
         Self {
             pixels: PixelLikelihoodParams::as_published(),
-            search: GlobalSearchParams { n_sampled_trajectories: 0, ..GlobalSearchParams::default() },
+            search: GlobalSearchParams { samples_per_place: 0.0, ..GlobalSearchParams::default() },
             relocalization: RelocalizationParams::off(),
             tempering_min_ess_share: 0.0,
             occlusion: ViewOcclusionModel { mean_time_hidden: 0.0, ..ViewOcclusionModel::default() },
@@ -120,7 +120,8 @@ impl LocalizerParams {
             .values()
             .into_iter()
             .chain(camera)
-            .chain([("search interval", self.search.search_interval)]);
+            .chain([("search interval", self.search.search_interval)])
+            .chain([("samples per place", self.search.samples_per_place)]);
         for (what, value) in not_negative {
             check(what, value, 0.0, f64::MAX)?;
         }

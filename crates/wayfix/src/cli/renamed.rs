@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 210] = [
+const RENAMED: [(&str, &str); 212] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -75,7 +75,7 @@ const RENAMED: [(&str, &str); 210] = [
     ("height", "height_sigma"),
     ("hidden_views", "occlusion"),
     ("increment", "increment_noise"),
-    ("independent_pixels", "n_effective_pixels"),
+    ("independent_pixels", "tile_pixels"),
     ("independent_rad", "point_error_correlation_angle_rad"),
     ("inertia", "previous_filter_weight"),
     ("initial_kernel_m", "initial_robust_kernel_width_m"),
@@ -124,10 +124,12 @@ const RENAMED: [(&str, &str); 210] = [
     ("moved_per_km", "kidnappings_per_km"),
     ("mu", "agreement_weights"),
     ("n_detections", "min_detections"),
-    ("n_drawn", "n_sampled_trajectories"),
+    ("n_drawn", "samples_per_place"),
+    ("n_effective_pixels", "tile_pixels"),
     ("n_frames", "n_buffered_frames"),
     ("n_moves", "n_first_round_moves"),
     ("n_places", "n_refined_places"),
+    ("n_sampled_trajectories", "samples_per_place"),
     ("n_scales", "n_scale_hypotheses"),
     ("n_search_samples", "n_search_color_hypotheses"),
     ("n_searches", "n_search_places"),

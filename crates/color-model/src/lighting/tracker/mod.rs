@@ -4,9 +4,11 @@ mod interacting;
 mod jump_markov;
 mod models;
 mod single;
+mod sun_and_shade;
 
 pub use interacting::{Gpb2LightingTracker, ImmLightingTracker};
 pub use jump_markov::JumpMarkovLightingTracker;
+pub(crate) use sun_and_shade::SunAndShade;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -69,6 +71,11 @@ pub trait LightingTracker {
     /// As for [`update`](Self::update), and if there is no such light.
     fn update_in(&mut self, _light: usize, means: &ColorMeans) -> Result<(), ColorModelError> {
         self.update(means)
+    }
+
+    /// The light in which a part of an image may be if the rest is in this one, as where a roof keeps the sun from a part of the floor.
+    fn shade_of(&self, _light: usize) -> Option<usize> {
+        None
     }
 
     /// Noise of pixels and of means.

@@ -6,8 +6,11 @@ use rand_distr::StandardNormal;
 use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
 use wayfix_estimation_traits::Pose2;
 
-use super::{buffer::BufferedFrame, start::Area};
-use crate::{ColorBlob, ColorModelError, FeatureLikelihoodParams, find_blobs, likelihood::feature_colors};
+use super::Area;
+use crate::{
+    ColorBlob, ColorModelError, FeatureLikelihoodParams, find_blobs, likelihood::feature_colors,
+    localizer::buffer::BufferedFrame,
+};
 
 /// Landmarks detected in classified frames, and the poses from which they look like that: sensor resetting. [Lenser & Veloso 2000]
 ///

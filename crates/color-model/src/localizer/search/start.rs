@@ -1,9 +1,10 @@
+use nalgebra::Vector3;
 use rand::{Rng, RngExt, distr::Distribution};
 use wayfix_color_map::ColorMap;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
-use crate::ColorModelError;
+use crate::{ColorModelError, localizer::estimate::PLACE_RADIUS};
 
 /// Prior of the start pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,9 +41,34 @@ impl Area {
         (0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&pose.translation[axis]))
     }
 
-    /// Size of the area, m².
-    pub(crate) fn size(&self) -> f64 {
-        (self.max[0] - self.min[0]) * (self.max[1] - self.min[1])
+    /// Number of distinguishable places: of cells of the size of a place.
+    pub(crate) fn n_places(&self) -> usize {
+        let size = (self.max[0] - self.min[0]) * (self.max[1] - self.min[1]);
+        ((size * std::f64::consts::TAU / PLACE_RADIUS.powi(3)) as usize).max(1)
+    }
+
+    /// Number of cells of at most this size along x, y (m) and the heading (rad).
+    pub(crate) fn cells(&self, size: &Vector3<f64>) -> [usize; 3] {
+        let side = |axis: usize| self.max[axis] - self.min[axis];
+        let sides = [side(0) / size.x, side(1) / size.y, std::f64::consts::TAU / size.z];
+        sides.map(|n| (n.ceil() as usize).max(1))
+    }
+
+    /// A pose of a cell.
+    pub(crate) fn draw_in<R: Rng + ?Sized>(
+        &self,
+        cell: usize,
+        [n_x, n_y, n_headings]: [usize; 3],
+        rng: &mut R,
+    ) -> Pose2<f64> {
+        let mut share = |at: usize, n: usize| (at as f64 + rng.random::<f64>()) / n as f64;
+        let shares = [
+            share(cell % n_x, n_x),
+            share(cell / n_x % n_y, n_y),
+            share(cell / (n_x * n_y) % n_headings, n_headings),
+        ];
+        let along = |axis: usize| self.min[axis] + shares[axis] * (self.max[axis] - self.min[axis]);
+        Pose2::new(along(0), along(1), (shares[2] - 0.5) * std::f64::consts::TAU)
     }
 
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {

@@ -1,0 +1,392 @@
+use nalgebra::{DMatrix, DVector, Vector3};
+use wayfix_estimation_traits::LogWeight;
+use wayfix_gaussian_core::log_sum_exp;
+
+use super::{PixelLikelihoodFrame, PixelLikelihoodParams, TileLight};
+use crate::{PixelSums, TileRegion, TiledImage};
+
+/// So many tiles are multiplied before a logarithm: their ratios, at most e⁵⁰ or so, fit a double.
+const N_MULTIPLIED: usize = 8;
+/// Steps of expectation maximization: the first one from the brightness of the tiles, the second one from their colours.
+const N_FIT_STEPS: usize = 2;
+
+/// The likelihood of an image in which every tile has a hidden light, as where the sun shines on a part of the floor.
+///
+/// All tiles $`t`$ are in one light $`j`$, or some are in its shade $`s`$, or a tile shows something else, as a ball or a person:
+/// ```math
+/// p(z | x, j) = \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, r_{tj} + ε \big]
+///   + \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, \tfrac{1}{2} (r_{tj} + r_{ts}) + ε \big], \quad
+/// r_{tj} = \Big[ \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], Σ_j[m,m] + ν)}{p_{bg}(c)} \Big]^{1/n_t}
+/// ```
+///
+/// This is [Schulz & Fox 2004, Eqs. 9, 16] with the $`n_t`$ mapped pixels of a tile as one observation: they share shade and errors of the pose. Their sums suffice. A label that
+/// fits every pixel of an image gains nothing over its average, the background. $`p(u)`$ is the likelihood of
+/// the tiles that do not show the map: each with the probability that it shows something else.
+#[derive(Default)]
+pub(crate) struct TileLikelihood {
+    regions: Vec<TileRegionColor>,
+    tiles: Vec<Tile>,
+    /// $`r_{tj}`$, tile by tile.
+    ratios: Vec<f64>,
+    /// Tiles that do not show the map, cell by cell.
+    unmapped: Vec<f64>,
+}
+
+/// A tile that shows the map.
+struct Tile {
+    /// End of its regions.
+    end: usize,
+    /// Number in its image.
+    number: usize,
+    /// Share of its pixels that the map shows.
+    mapped: f64,
+    /// When a light is fitted.
+    weight: f64,
+}
+
+/// The pixels of a colour in a tile.
+pub(crate) struct TileRegionColor {
+    pub(super) color: usize,
+    /// Share of the pixels of the tile.
+    share: f64,
+    pub(super) mean: Vector3<f64>,
+    /// Variance of the pixels about their mean.
+    pub(super) scatter: Vector3<f64>,
+    /// $`-\ln p_{bg}`$ of a pixel on average.
+    background: f64,
+}
+
+/// A light of a tracker, and its shade.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightOfTiles {
+    pub(crate) light: usize,
+    pub(crate) shade: Option<usize>,
+    pub(crate) n_lights: usize,
+}
+
+impl TileLikelihood {
+    /// Number of tiles that show the map.
+    pub(crate) fn n_tiles(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// Forgets all tiles.
+    pub(crate) fn clear(&mut self) {
+        self.regions.clear();
+        self.tiles.clear();
+    }
+
+    /// Adds the tiles of an image, each with this weight when a light is fitted.
+    pub(crate) fn add_tiles(
+        &mut self,
+        image: &TiledImage,
+        regions: impl Iterator<Item = TileRegion>,
+        weight: f64,
+    ) {
+        let mut number = None;
+        for region in regions {
+            let Some(mean) = region.sums.mean() else { continue };
+            if let Some(last) = number.replace(region.tile)
+                && last != region.tile
+            {
+                self.end_tile(image, last, weight);
+            }
+            let count = region.sums.count() as f64;
+            let scatter = region.sums.variance();
+            let background = region.sums.background_nats() / count + image.log_ratio_of_scatter(&scatter);
+            self.regions.push(TileRegionColor {
+                color: region.color,
+                share: count,
+                mean,
+                scatter,
+                background,
+            });
+        }
+        if let Some(last) = number {
+            self.end_tile(image, last, weight);
+        }
+    }
+
+    fn end_tile(&mut self, image: &TiledImage, number: usize, weight: f64) {
+        let start = self.tiles.last().map_or(0, |tile| tile.end);
+        let n_pixels: f64 = self.regions[start..].iter().map(|region| region.share).sum();
+        self.regions[start..].iter_mut().for_each(|region| region.share /= n_pixels);
+        let mapped = n_pixels / image.n_pixels(number) as f64;
+        self.tiles.push(Tile { end: self.regions.len(), number, mapped, weight });
+    }
+
+    /// Computes the likelihood ratio of each tile in each light.
+    pub(crate) fn weigh(&mut self, lights: &[TileLight]) {
+        let Self { regions, tiles, ratios, .. } = self;
+        ratios.clear();
+        let mut start = 0;
+        for Tile { end, .. } in tiles {
+            for light in lights {
+                let log =
+                    |region: &TileRegionColor| region.share * (light.log_density(region) + region.background);
+                ratios.push(regions[start..*end].iter().map(log).sum::<f64>().exp());
+            }
+            start = *end;
+        }
+    }
+
+    /// The log-likelihood of an image, which has these tiles, in a light, and whether some of them are rather in its shade.
+    pub(crate) fn log_likelihood(
+        &mut self,
+        image: &TiledImage,
+        LightOfTiles { light, shade, n_lights }: LightOfTiles,
+        tiles: std::ops::Range<usize>,
+        params: &PixelLikelihoodParams,
+    ) -> (LogWeight, bool) {
+        let even = self.log_likelihood_of(image, (&tiles, n_lights), params, |ratios| ratios[light]);
+        let Some(shade) = shade else { return (even, false) };
+        let mean = |ratios: &[f64]| 0.5 * (ratios[light] + ratios[shade]);
+        let uneven = self.log_likelihood_of(image, (&tiles, n_lights), params, mean);
+        (log_sum_exp(&[even, uneven]) - std::f64::consts::LN_2, uneven > even)
+    }
+
+    /// The log-likelihood of an image if a tile that shows the map has this likelihood ratio. Tiles that show something else are background.
+    fn log_likelihood_of(
+        &mut self,
+        image: &TiledImage,
+        (range, n_lights): (&std::ops::Range<usize>, usize),
+        params: &PixelLikelihoodParams,
+        ratio: impl Fn(&[f64]) -> f64,
+    ) -> LogWeight {
+        let Self { tiles, ratios, unmapped, .. } = self;
+        let (tiles, ratios) = (&tiles[range.clone()], ratios.chunks_exact(n_lights.max(1)).skip(range.start));
+        let shown = ratios.take(tiles.len()).map(|ratios| (1.0 - params.outlier_share) * ratio(ratios));
+        let log = log_product(shown.clone().map(|shown| shown + params.outlier_share));
+        let Some(colors) = image.unmapped_colors() else { return log };
+        let probability = |shown: f64| shown / (shown + params.outlier_share);
+        let mapped =
+            tiles.iter().zip(shown).map(|(tile, shown)| (tile.number, tile.mapped * probability(shown)));
+        log + colors.log_ratio(mapped, unmapped)
+    }
+
+    /// Adds the pixels of each tile to its light, unless it shows something else; `shown` has all colours of the first light, then those of the next. All tiles are in the
+    /// light, or each in the more probable one of light and shade.
+    pub(crate) fn show(
+        &self,
+        regions: impl Iterator<Item = TileRegion>,
+        LightOfTiles { light, shade, n_lights }: LightOfTiles,
+        params: &PixelLikelihoodParams,
+        shown: &mut [PixelSums],
+    ) {
+        let n_colors = shown.len() / n_lights.max(1);
+        let lights = [Some(light), shade];
+        let n_shown = lights.iter().flatten().count() as f64;
+        let something_else = params.outlier_share * n_shown / (1.0 - params.outlier_share);
+        let (mut tile, mut at) = (None, 0);
+        for region in regions {
+            at += usize::from(tile.replace(region.tile).is_some_and(|last| last != region.tile));
+            let ratios = lights.iter().flatten().map(|light| (*light, self.ratios[at * n_lights + light]));
+            let best = ratios.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| *ratio > something_else);
+            if let Some((light, _)) = best
+                && let Some(sums) = shown.get_mut(light * n_colors + region.color)
+            {
+                sums.add(&region.sums);
+            }
+        }
+    }
+
+    /// Some lights after expectation maximization [Dempster et al. 1977] on all tiles, and the logarithm of their density, as of [`TileLight::learned`]. Of two lights the
+    /// first one begins with the brighter tiles.
+    pub(crate) fn fit(
+        &mut self,
+        beliefs: &[(&DVector<f64>, &DMatrix<f64>)],
+        params: &PixelLikelihoodParams,
+        frame: &PixelLikelihoodFrame,
+    ) -> (Vec<TileLight>, LogWeight) {
+        let noise = (&frame.pixel_color_variance, &frame.mean_color_variance);
+        let bright = self.brightness();
+        let mut shares: Vec<f64> = match beliefs.len() {
+            2 => bright
+                .iter()
+                .flat_map(|bright| [f64::from(u8::from(*bright > 1.0)), f64::from(u8::from(*bright <= 1.0))])
+                .collect(),
+            n => vec![1.0 / n as f64; n * self.n_tiles()],
+        };
+        let mut fitted = (Vec::new(), 0.0);
+        for _ in 0..N_FIT_STEPS {
+            let learned = beliefs.iter().enumerate().map(|(at, belief)| {
+                TileLight::learned(*belief, self.weighted(&shares, (at, beliefs.len())), params, noise)
+            });
+            let (lights, logs): (Vec<_>, Vec<_>) = learned.unzip();
+            self.weigh(&lights);
+            self.shares(lights.len(), params.outlier_share, &mut shares);
+            fitted = (lights, logs.iter().sum());
+        }
+        fitted
+    }
+
+    /// Brightness of each tile, as a share of the mean of its colours.
+    fn brightness(&self) -> Vec<f64> {
+        let n_colors = self.regions.iter().map(|region| region.color + 1).max().unwrap_or(0);
+        let mut means = vec![(0.0, 0.0); n_colors];
+        for region in &self.regions {
+            let (sum, weight) = &mut means[region.color];
+            *sum += region.share * region.mean.x;
+            *weight += region.share;
+        }
+        let relative = |region: &TileRegionColor| {
+            let (sum, weight) = means[region.color];
+            region.share * region.mean.x * weight / sum.max(f64::MIN_POSITIVE)
+        };
+        let mut start = 0;
+        let tiles = self.tiles.iter().map(|tile| {
+            let regions = &self.regions[start..tile.end];
+            start = tile.end;
+            regions.iter().map(relative).sum()
+        });
+        tiles.collect()
+    }
+
+    /// Weight, mean and colour of all regions in a light.
+    fn weighted<'a>(
+        &'a self,
+        shares: &'a [f64],
+        (light, n_lights): (usize, usize),
+    ) -> impl Iterator<Item = (f64, Vector3<f64>, usize)> + 'a {
+        let starts = std::iter::once(0).chain(self.tiles.iter().map(|tile| tile.end));
+        starts.zip(&self.tiles).zip(shares.chunks_exact(n_lights)).flat_map(move |((start, tile), shares)| {
+            let weight = tile.weight * shares[light];
+            let regions = self.regions[start..tile.end].iter();
+            regions.map(move |region| (weight * region.share, region.mean, region.color))
+        })
+    }
+
+    /// Probability of each light in each tile.
+    fn shares(&self, n_lights: usize, outlier_share: f64, shares: &mut Vec<f64>) {
+        shares.clear();
+        let prior = (1.0 - outlier_share) / n_lights as f64;
+        for ratios in self.ratios.chunks_exact(n_lights) {
+            let sum = prior * ratios.iter().sum::<f64>() + outlier_share;
+            shares.extend(ratios.iter().map(|ratio| prior * ratio / sum));
+        }
+    }
+}
+
+/// Logarithm of a product.
+fn log_product(mut factors: impl Iterator<Item = f64>) -> LogWeight {
+    let mut log = 0.0;
+    loop {
+        let mut n = 0;
+        let product: f64 = factors.by_ref().take(N_MULTIPLIED).inspect(|_| n += 1).product();
+        log += product.ln();
+        if n < N_MULTIPLIED {
+            return log;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_abs_diff_eq;
+    use wayfix_gaussian_core::Gaussian;
+
+    use super::*;
+    use crate::{LightingFilter, LightingFilterParams, LightingTracker, TileSums, YuvImage};
+
+    const NATS: f64 = 10.0;
+
+    /// Tiles of 2 × 2 pixels of one colour.
+    fn tiles(pixels: &[[[u8; 3]; 4]]) -> (TiledImage, TileSums) {
+        let rows = [[0, 1], [2, 3]].map(|row| pixels.iter().flat_map(move |tile| row.map(|at| tile[at])));
+        let image = YuvImage::new(2 * pixels.len() as u32, 2, rows.into_iter().flatten().collect()).unwrap();
+        let image = TiledImage::new(&image, 2, |_| NATS).unwrap();
+        let mut sums = TileSums::new(&image, 1);
+        (0..2).for_each(|row| sums.add_run(&image, (row, 0, 2 * pixels.len()), 0));
+        sums.add_covered_rows(&image);
+        (image, sums)
+    }
+
+    fn filter(y: f64, sigma: f64) -> LightingFilter {
+        let variance = sigma * sigma;
+        let prior = Gaussian::new(
+            DVector::from_vec(vec![y, 128.0, 128.0]),
+            DMatrix::from_diagonal(&DVector::from_vec(vec![variance, 25.0, 25.0])),
+        );
+        LightingFilter::new(prior.unwrap(), LightingFilterParams::default()).unwrap()
+    }
+
+    fn light(y: f64, params: &PixelLikelihoodParams) -> TileLight {
+        TileLight::new(&filter(y, 1.0), 0, params, &Vector3::new(25.0, 9.0, 9.0)).unwrap()
+    }
+
+    const SHADED: LightOfTiles = LightOfTiles { light: 0, shade: Some(1), n_lights: 2 };
+
+    #[test]
+    fn a_tile_counts_as_its_mean_pixel() {
+        let pixels = [[90, 118, 130], [96, 122, 130], [90, 122, 126], [96, 118, 126]];
+        let params = PixelLikelihoodParams { brightness_variation: 0.0, ..Default::default() };
+        let (image, sums) = tiles(&[pixels]);
+        let mut tiles = TileLikelihood::default();
+        tiles.add_tiles(&image, sums.regions(), 1.0);
+        tiles.weigh(&[light(100.0, &params)]);
+        let in_light = LightOfTiles { light: 0, shade: None, n_lights: 1 };
+        let (value, is_shaded) = tiles.log_likelihood(&image, in_light, 0..1, &params);
+        let normal = |x: f64, v: f64| -0.5 * (x * x / v + (std::f64::consts::TAU * v).ln());
+        let variances = [26.0, 34.0, 34.0]; // of the light and of a pixel
+        let pixel = |pixel: &[u8; 3]| -> f64 {
+            (0..3).map(|at| normal(f64::from(pixel[at]) - [100.0, 128.0, 128.0][at], variances[at])).sum()
+        };
+        // The only tile has the median scatter and the mean one.
+        let ratio = (pixels.iter().map(pixel).sum::<f64>() / 4.0 + NATS).exp();
+        assert_abs_diff_eq!(value, (0.9 * ratio + 0.1).ln(), epsilon = 1e-4); // the background is rounded
+        assert!(!is_shaded);
+    }
+
+    #[test]
+    fn each_tile_is_in_the_sun_or_in_the_shade() {
+        let params = PixelLikelihoodParams { brightness_variation: 0.0, ..Default::default() };
+        let (bright, dark) = ([[192, 128, 128]; 4], [[52, 128, 128]; 4]);
+        let (image, sums) = tiles(&[bright, dark, dark]);
+        let mut tiles = TileLikelihood::default();
+        tiles.add_tiles(&image, sums.regions(), 1.0);
+        tiles.weigh(&[light(200.0, &params), light(60.0, &params)]);
+        let alone = tiles.log_likelihood(&image, LightOfTiles { shade: None, ..SHADED }, 0..3, &params).0;
+        let (shaded, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..3, &params);
+        assert!(is_shaded && shaded > alone);
+        let (_, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..1, &params);
+        assert!(!is_shaded); // the first tile alone
+        let mut shown = [PixelSums::default(); 2];
+        tiles.show(sums.regions(), SHADED, &params, &mut shown);
+        assert_eq!(shown.map(|sums| sums.mean().map(|mean| mean.x)), [Some(192.0), Some(52.0)]);
+        let mut shown = [PixelSums::default(); 2];
+        tiles.show(sums.regions(), LightOfTiles { shade: None, ..SHADED }, &params, &mut shown);
+        assert_eq!(shown.map(|sums| sums.count()), [4, 0]); // the others show something else
+    }
+
+    #[test]
+    fn a_product_of_many_tiles_does_not_overflow() {
+        assert_abs_diff_eq!(log_product((0..1000).map(|_| 50_f64.exp())), 50_000.0, epsilon = 1e-6);
+        assert_eq!(log_product(std::iter::empty()), 0.0);
+    }
+
+    #[test]
+    fn a_fitted_light_is_that_of_the_tiles() {
+        let (params, filter) = (PixelLikelihoodParams::default(), filter(100.0, 30.0));
+        let LightingFilterParams { pixel_color_variance, mean_color_variance, .. } = filter.noise();
+        let frame = PixelLikelihoodFrame { pixel_color_variance, mean_color_variance };
+        let fitted = |pixels: &[[[u8; 3]; 4]], n: usize| {
+            let (image, sums) = tiles(pixels);
+            let mut tiles = TileLikelihood::default();
+            tiles.add_tiles(&image, sums.regions(), 1.0);
+            let belief = filter.joint_belief(0).unwrap();
+            let (lights, log_density) = tiles.fit(&vec![belief; n], &params, &frame);
+            (lights.iter().map(|light| light.mean(0).x).collect::<Vec<_>>(), log_density)
+        };
+        let variance = (pixel_color_variance + mean_color_variance).x;
+        // Fifty means against a prior of variance 900.
+        let gain = 900.0 / (900.0 + variance / 50.0);
+        let (means, log_density) = fitted(&[[[130, 128, 128]; 4]; 50], 1);
+        assert_abs_diff_eq!(means[0], 100.0 + gain * 30.0, epsilon = 0.1); // few tiles may show something else
+        let (_, at_the_mean) = fitted(&[[[100, 128, 128]; 4]; 50], 1);
+        let expected = 0.5 * (gain * 30.0_f64).powi(2) / 900.0; // of the fitted mean under the prior
+        assert_abs_diff_eq!(at_the_mean - log_density, expected, epsilon = 0.05);
+        let pixels: Vec<_> = (0..50).map(|at| [[if at % 2 == 0 { 160 } else { 60 }, 128, 128]; 4]).collect();
+        let (means, _) = fitted(&pixels, 2);
+        assert!((means[0] - 160.0).abs() < 5.0 && (means[1] - 60.0).abs() < 5.0, "{means:?}");
+    }
+}

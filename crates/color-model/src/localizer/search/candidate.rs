@@ -1,0 +1,58 @@
+use wayfix_estimation_traits::{LogWeight, Pose2};
+
+use super::trajectory::Trajectory;
+use crate::{likelihood::TileLight, localizer::estimate::is_same_place};
+
+/// A trajectory, and how well it explains the frames.
+#[derive(Clone)]
+pub(super) struct Candidate {
+    pub(super) trajectory: Trajectory,
+    pub(super) light: FittedLight,
+    pub(super) log_evidence: LogWeight,
+    /// Of each frame that was weighed, its index and its log-likelihood in the light.
+    pub(super) log_likelihoods: Vec<(usize, LogWeight)>,
+    /// Scale of the next step of the pose, and of the errors.
+    pub(super) steps: [f64; 2],
+    /// The place that was known before the search, if the candidate started there; it stays there.
+    pub(super) known: Option<Pose2<f64>>,
+}
+
+/// The light that a candidate's frames show.
+#[derive(Clone, Default)]
+pub(super) struct FittedLight {
+    /// Index of the tracker whose light it is.
+    pub(super) tracker: usize,
+    /// Which of its lights.
+    pub(super) light: usize,
+    /// The light, and its shade if there is any.
+    pub(super) lights: Vec<TileLight>,
+    /// Of the lights under the tracker's belief, nats.
+    pub(super) log_density: LogWeight,
+}
+
+impl Candidate {
+    pub(super) fn new(trajectory: Trajectory) -> Self {
+        Self {
+            trajectory,
+            light: FittedLight::default(),
+            log_evidence: f64::NEG_INFINITY,
+            log_likelihoods: Vec::new(),
+            steps: [0.5, 1.0],
+            known: None,
+        }
+    }
+}
+
+/// Keeps the `n` best that are in different places, the best first, and the known one.
+pub(super) fn retain_places(candidates: &mut Vec<Candidate>, n: usize) {
+    candidates.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    let mut kept: Vec<Candidate> = Vec::new();
+    for candidate in candidates.drain(..) {
+        let is_near =
+            |other: &Candidate| is_same_place(&other.trajectory.newest, &candidate.trajectory.newest);
+        if candidate.known.is_some() || (kept.len() < n.max(1) && !kept.iter().any(is_near)) {
+            kept.push(candidate);
+        }
+    }
+    *candidates = kept;
+}

@@ -1,0 +1,269 @@
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use rand::{Rng, RngExt};
+use wayfix_estimation_traits::{LogWeight, Pose2};
+use wayfix_particle::{ParticleChunkRng, ParticleSet};
+
+use super::{
+    Area, StartPosePrior,
+    candidate::{Candidate, retain_places},
+    detections::Detections,
+    evidence::{Effort, Evidence, Scratch},
+    pyramid::Level,
+    trajectory::Trajectory,
+};
+use crate::{
+    ColorModelError, LightingTracker, PixelClassifier,
+    localizer::{
+        LocalizerParams,
+        buffer::BufferedFrame,
+        camera::CameraLocation,
+        estimate::{PLACE_RADIUS, is_same_place},
+        filter::{ColorFilter, update_lights},
+        frame::Scene,
+    },
+};
+
+/// The images are searched at a quarter and at half of their resolution.
+const SHRINK: [u16; 2] = [4, 2];
+/// Rounds of refinement; the first half of them is coarse. Three of four places are dropped after a round, and the others get twice as many moves and frames.
+const N_ROUNDS: u32 = 4;
+/// Factors of a step after a success and after a failure: the step stays the same if one in five succeeds. [Rechenberg 1973]
+const STEP_FACTORS: [f64; 2] = [1.5, 0.9036];
+/// Global search in several frames at once.
+///
+/// Under an unknown light some false place explains a single frame better than the true one. The light is common to all frames, so whole trajectories
+/// are weighed by all frames under one light. The likelihood is narrow: trajectories are drawn in every cell of its width and where detected landmarks fit, then moved by
+/// steps that adapt to their success [Rechenberg 1973], while the worse places are dropped again and again [Li et al. 2018].
+pub(crate) struct Search<'a, T> {
+    evidence: Evidence<'a, T>,
+    area: &'a Area,
+    detections: Detections,
+    /// Width of a peak of the coarse likelihood along x, y (m) and the heading (rad).
+    cell: Vector3<f64>,
+}
+
+/// A place that explains the frames.
+pub(crate) struct Found<T> {
+    pub(crate) filter: ColorFilter<T>,
+    pub(crate) place: Pose2<f64>,
+    /// Log-likelihood of all frames, each by what it adds to the one before, with the prior of the trajectory, nats.
+    pub(crate) log_evidence: LogWeight,
+    /// Whether it is the place that was known before the search.
+    pub(crate) is_known: bool,
+}
+
+impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
+    pub(crate) fn new(
+        scene: Scene<'a, ()>,
+        (area, start): (&'a Area, &'a StartPosePrior),
+        params: &'a LocalizerParams,
+        lights: [&'a Arc<T>; 2],
+        (frames, independent_shares): (Vec<BufferedFrame>, Vec<f64>),
+    ) -> Result<Self, ColorModelError> {
+        let tile = |shrink: u16| scene.pixels.tile_pixels.div_ceil(shrink);
+        let [coarse, fine] = SHRINK.map(|shrink| Level::new(&scene, &frames, shrink, tile(shrink)));
+        let levels = [coarse?, fine?];
+        let [_, fine] = &levels;
+        let mut detections = Detections::new(scene.map);
+        let every = lights.iter().flat_map(|light| (0..light.n_lights()).map(|at| light.colors_in(at)));
+        for colors in every {
+            let classifier = PixelClassifier::new(scene.pixels.shaded(colors?))?;
+            for ((at, image), frame) in fine.images.iter().enumerate().zip(&frames) {
+                let label =
+                    |pixel: &[u8; 3]| classifier.classify_above(*pixel, -fine.nats(scene.background, *pixel));
+                let labels: Vec<u8> = image.pixels().iter().map(label).collect();
+                detections.add(&labels, at, frame, &fine.camera)?;
+            }
+        }
+        // A turn by a tile shows other colours in it: no heading of a cell is farther from its middle.
+        let turn = f64::from(2 * scene.pixels.tile_pixels) / scene.camera.fx();
+        let cell = Vector3::new(PLACE_RADIUS, PLACE_RADIUS, turn.min(PLACE_RADIUS));
+        Ok(Self {
+            evidence: Evidence { scene, start, params, lights, frames, independent_shares, levels },
+            area,
+            detections,
+            cell,
+        })
+    }
+
+    /// The places that explain the frames best, the best first, among those that the start allows, and the `known` one.
+    pub(crate) fn run<R: Rng + ?Sized>(
+        &self,
+        known: Option<CameraLocation>,
+        rng: &mut R,
+    ) -> Result<Vec<Found<T>>, ColorModelError> {
+        let params = &self.evidence.params.search;
+        let rough = Effort { level: 0, n_frames: 1 };
+        let drawn = self.drawn(rng).map(|trajectory| self.candidate(trajectory)).collect();
+        let mut candidates = self.each(drawn, rng, |scratch, candidate, _| {
+            self.evidence.fit(scratch, candidate, rough, false);
+        })?;
+        candidates.extend(known.map(|at| self.known(&at)));
+        retain_places(&mut candidates, params.n_refined_places);
+        for round in 0..N_ROUNDS {
+            let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames: 2 << round };
+            candidates = self.each(candidates, rng, |scratch, candidate, rng| {
+                self.evidence.fit(scratch, candidate, effort, true);
+                for _ in 0..params.n_first_round_moves << round {
+                    self.refine(scratch, candidate, effort, rng);
+                }
+                self.evidence.fit(scratch, candidate, effort, true);
+            })?;
+            retain_places(
+                &mut candidates,
+                params.n_refined_places >> (2 * (round + 1)).min(2 * N_ROUNDS - 2),
+            );
+        }
+        let n_particles = self.evidence.params.max_particles.div_ceil(candidates.len().max(1));
+        candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()
+    }
+
+    /// Trajectories that the start allows. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
+    fn drawn<'b, R: Rng + ?Sized>(&'b self, rng: &'b mut R) -> impl Iterator<Item = Trajectory> + 'b {
+        let Evidence { levels: [coarse, _], start, params, frames, .. } = &self.evidence;
+        let counts = self.area.cells(&self.cell);
+        let n_cells: usize = counts.iter().product();
+        let n = (params.search.samples_per_place * n_cells as f64).ceil() as usize;
+        let newest = coarse.images.len() - 1;
+        (0..n + n / 2).filter_map(move |at| {
+            let (frame, pose) = match start {
+                StartPosePrior::Anywhere if at < n => {
+                    (newest, self.area.draw_in(at * n_cells / n, counts, rng))
+                }
+                StartPosePrior::Anywhere => self.detections.draw(self.area, rng)?,
+                StartPosePrior::Near(_) => (0, start.draw(self.area, rng)),
+            };
+            Some(Trajectory::through(&pose, frame, frames))
+        })
+    }
+
+    /// The place that was known before the search.
+    fn known(&self, location: &CameraLocation) -> Candidate {
+        let Evidence { params, frames, .. } = &self.evidence;
+        let trajectory = Trajectory::through(&location.body, frames.len(), frames)
+            .with_camera_error(&location.error, &params.camera_pose_noise);
+        Candidate { known: Some(location.body), ..self.candidate(trajectory) }
+    }
+
+    fn candidate(&self, mut trajectory: Trajectory) -> Candidate {
+        self.area.clamp(&mut trajectory.newest);
+        Candidate::new(trajectory)
+    }
+
+    /// Tries a step of the whole trajectory, and a step of the errors.
+    fn refine(
+        &self,
+        scratch: &mut Scratch,
+        candidate: &mut Candidate,
+        effort: Effort,
+        rng: &mut ParticleChunkRng,
+    ) {
+        let [pose, errors] = candidate.steps;
+        let trajectory = candidate.trajectory.moved(&(self.cell * pose), rng);
+        let is_better = self.consider(scratch, candidate, effort, trajectory);
+        candidate.steps[0] *= STEP_FACTORS[usize::from(!is_better)];
+        let is_better = match rng.random_range(0..3) {
+            0 => {
+                let trajectory = candidate.trajectory.with_other_mount(errors, rng);
+                self.consider(scratch, candidate, effort, trajectory)
+            }
+            1 => {
+                let trajectory = candidate.trajectory.with_other_odometry(errors, rng);
+                self.consider(scratch, candidate, effort, trajectory)
+            }
+            _ => {
+                let trajectory = candidate.trajectory.with_other_sway(errors, rng);
+                self.consider_each(scratch, candidate, effort, trajectory)
+            }
+        };
+        candidate.steps[1] *= STEP_FACTORS[usize::from(!is_better)];
+    }
+
+    /// Takes a trajectory if it explains the frames better; returns whether it does.
+    fn consider(
+        &self,
+        scratch: &mut Scratch,
+        candidate: &mut Candidate,
+        effort: Effort,
+        mut trajectory: Trajectory,
+    ) -> bool {
+        self.area.clamp(&mut trajectory.newest);
+        if candidate.known.is_some_and(|known| !is_same_place(&known, &trajectory.newest)) {
+            return false;
+        }
+        let mut moved = Candidate { trajectory, ..candidate.clone() };
+        self.evidence.weigh(scratch, &mut moved, effort);
+        let is_better = moved.log_evidence > candidate.log_evidence;
+        if is_better {
+            *candidate = moved;
+        }
+        is_better
+    }
+
+    /// Takes the camera's error at each frame that it explains better; returns whether these are more than one in five. In a light that is given, a frame depends on its
+    /// own error alone.
+    fn consider_each(
+        &self,
+        scratch: &mut Scratch,
+        candidate: &mut Candidate,
+        effort: Effort,
+        trajectory: Trajectory,
+    ) -> bool {
+        let mut moved = Candidate { trajectory, ..candidate.clone() };
+        self.evidence.weigh(scratch, &mut moved, effort);
+        let mut n_better = 0;
+        for (log, new_log) in candidate.log_likelihoods.iter_mut().zip(&moved.log_likelihoods) {
+            let at = log.0;
+            let prior = |trajectory: &Trajectory| trajectory.log_prior_of_camera(at);
+            let gain = new_log.1 + prior(&moved.trajectory) - log.1 - prior(&candidate.trajectory);
+            if gain > 0.0 {
+                candidate.trajectory.take_camera_error(&moved.trajectory, at);
+                candidate.log_evidence += gain;
+                *log = *new_log;
+                n_better += 1;
+            }
+        }
+        5 * n_better > candidate.log_likelihoods.len()
+    }
+
+    /// Particles about a candidate, spread by its last step, with the light that all frames show from there.
+    fn found<R: Rng + ?Sized>(
+        &self,
+        candidate: &Candidate,
+        n_particles: usize,
+        rng: &mut R,
+    ) -> Result<Found<T>, ColorModelError> {
+        let Evidence { lights, params, .. } = &self.evidence;
+        let locations = self.evidence.locations(candidate);
+        let newest = *locations.last().ok_or(ColorModelError::NoPose)?;
+        let mut light = T::clone(lights[candidate.light.tracker]);
+        let shown = self.evidence.shown(candidate, &locations);
+        update_lights(&mut light, candidate.light.light, &shown, params);
+        let location = |_| {
+            let mut body = candidate.trajectory.moved(&(self.cell * candidate.steps[0]), rng).newest;
+            self.area.clamp(&mut body);
+            CameraLocation { body, ..newest }
+        };
+        let filter = ColorFilter::new((0..n_particles).map(location), &Arc::new(light))?;
+        Ok(Found {
+            filter,
+            place: candidate.trajectory.newest,
+            log_evidence: candidate.log_evidence,
+            is_known: candidate.known.is_some(),
+        })
+    }
+
+    /// Does `job` to every candidate, each with the random stream of its chunk.
+    fn each<R: Rng + ?Sized>(
+        &self,
+        candidates: Vec<Candidate>,
+        rng: &mut R,
+        job: impl Fn(&mut Scratch, &mut Candidate, &mut ParticleChunkRng) + Sync,
+    ) -> Result<Vec<Candidate>, ColorModelError> {
+        let mut set = ParticleSet::new(candidates)?;
+        set.propagate_with(|| self.evidence.scratch(), job, rng);
+        Ok(set.states().to_vec())
+    }
+}

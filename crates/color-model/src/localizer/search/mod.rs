@@ -1,0 +1,13 @@
+//! Global search: the places that explain the last frames.
+
+mod candidate;
+mod detections;
+mod evidence;
+mod global_search;
+mod pyramid;
+mod start;
+mod trajectory;
+
+pub(crate) use global_search::{Found, Search};
+pub(crate) use start::Area;
+pub use start::StartPosePrior;
