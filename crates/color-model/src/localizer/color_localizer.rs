@@ -360,7 +360,7 @@ where
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
         let mean =
             self.log_ratios.iter().map(|(log, _)| log).sum::<f64>() / self.log_ratios.len().max(1) as f64;
-        let n_independent = 1.0 + self.log_ratios.iter().skip(1).map(|(_, share)| share).sum::<f64>();
+        let n_independent = self.log_ratios.iter().map(|(_, share)| share).sum::<f64>().max(1.0);
         let is_explained = n_independent * mean > odds.ln();
         let status = match (self.n_updates >= n_frames, is_explained) {
             (true, false) => LocalizationStatus::Lost,
