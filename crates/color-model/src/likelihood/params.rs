@@ -7,7 +7,7 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LightErrorCorrelation {
-    /// The pixels of a tile share a light, which is one of the bank: sun and shade may lie on one carpet.
+    /// The pixels of a tile share a light, or its shade: sun and shade may lie on one carpet.
     #[default]
     #[cfg_attr(feature = "serde", serde(alias = "common"))]
     Tile,

@@ -52,7 +52,7 @@ pub struct GlobalSearchParams {
     /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
     /// Default 16.
     pub n_buffered_frames: usize,
-    /// Number of trajectories drawn for each 0.3 m × 0.3 m × 0.3 rad of the map; 0 never searches. Default 1: within that distance the likelihood has one peak.
+    /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad; 0 never searches. Default 1.
     pub samples_per_place: f64,
     /// Number of places that are refined at first; a quarter of them is kept after each of three rounds. Default 800.
     pub n_refined_places: usize,

@@ -31,6 +31,7 @@ const SHRINK: [u16; 2] = [4, 2];
 const N_ROUNDS: u32 = 4;
 /// Factors of a step after a success and after a failure: the step stays the same if one in five succeeds. [Rechenberg 1973]
 const STEP_FACTORS: [f64; 2] = [1.5, 0.9036];
+
 /// Global search in several frames at once.
 ///
 /// Under an unknown light some false place explains a single frame better than the true one. The light is common to all frames, so whole trajectories
