@@ -30,18 +30,21 @@ pub(super) fn bind(doc: &Path, header: Option<&Path>) -> Result<usize> {
     }
     let pages: Vec<Page> = tracked.iter().filter_map(|path| Page::of(path)).collect();
     for page in &pages {
-        render(page, &book, header).with_context(|| format!("page {}", page.source))?;
+        let text = fs::read_to_string(root.join(&page.source))?;
+        for (file, copied) in page.files(&text, &tracked) {
+            copy(&root.join(file), &book.join(copied))?;
+        }
+        render(page, &text, &book, header).with_context(|| format!("page {}", page.source))?;
     }
     Ok(pages.len())
 }
 
-fn render(page: &Page, book: &Path, header: Option<&Path>) -> Result<()> {
+fn render(page: &Page, text: &str, book: &Path, header: Option<&Path>) -> Result<()> {
     let scratch = shell::target_dir().join("book");
     let markdown = scratch.join(&page.target).with_extension("md");
     let folder = markdown.parent().context("a page lies in a folder")?;
     fs::create_dir_all(folder)?;
-    let text = fs::read_to_string(shell::root().join(&page.source))?;
-    fs::write(&markdown, page.rewritten(&text))?;
+    fs::write(&markdown, page.rewritten(text))?;
     let banner = folder.join("banner.html");
     fs::write(&banner, page.banner())?;
 

@@ -1,8 +1,11 @@
 //! Path of a Markdown file of the repository in the site, and the targets of its links.
 
+use std::path::Path;
+
 use crate::tidy::{link_targets, resolve};
 
-const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
+/// Folder of the book with the files of the repository that its pages name.
+const FILES: &str = "files";
 
 pub(super) struct Page {
     /// Path in the repository.
@@ -37,7 +40,22 @@ impl Page {
         )
     }
 
-    /// The text with its links leading to pages of the site, or to the repository, and with fences that rustdoc does not take for Rust.
+    /// Files of the repository that the text names and that are no page or picture: each path and its copy in the book.
+    pub(super) fn files(&self, text: &str, tracked: &[String]) -> Vec<(String, String)> {
+        let named = link_targets(text).into_iter().filter_map(|target| match self.target(&text[target]) {
+            Target::File(path) => Some(path),
+            Target::Site(_) => None,
+        });
+        let below = |path: &str| format!("{path}/");
+        named
+            .flat_map(|path| {
+                tracked.iter().filter(move |file| **file == path || file.starts_with(&below(&path)))
+            })
+            .map(|file| (file.clone(), copy_of(file)))
+            .collect()
+    }
+
+    /// The text with its links leading to pages of the site, or to copies of files, and with fences that rustdoc does not take for Rust.
     pub(super) fn rewritten(&self, text: &str) -> String {
         let (mut out, mut done) = (String::with_capacity(text.len()), 0);
         for target in link_targets(text) {
@@ -49,24 +67,47 @@ impl Page {
         name_fences(&out)
     }
 
-    fn link(&self, target: &str) -> String {
-        let (file, heading) = target.split_at(target.find('#').unwrap_or(target.len()));
+    fn link(&self, link: &str) -> String {
+        match self.target(link) {
+            Target::Site(target) => target,
+            Target::File(path) if Path::new(&path).extension().is_some() => self.up() + &copy_of(&path),
+            Target::File(folder) => format!("{}{FILES}/{folder}", self.up()),
+        }
+    }
+
+    fn target(&self, link: &str) -> Target {
+        let (file, heading) = link.split_at(link.find('#').unwrap_or(link.len()));
         if file.is_empty() || file.contains(':') {
-            return target.to_owned();
+            return Target::Site(link.to_owned());
         }
         let path = resolve(&self.source, file);
         let up = self.up();
         if let Some(page) = Self::of(&path) {
-            return format!("{up}{}{heading}", page.target);
+            return Target::Site(format!("{up}{}{heading}", page.target));
         }
         if let Some(picture) = path.strip_prefix("docs/img/") {
-            return format!("{up}img/{picture}");
+            return Target::Site(format!("{up}img/{picture}"));
         }
         match path.strip_prefix("crates/") {
-            Some(krate) if !krate.contains('/') => format!("{up}../{}/index.html", library(krate)),
-            _ => format!("{REPOSITORY}/blob/main/{path}{heading}"),
+            Some(krate) if !krate.contains('/') => {
+                Target::Site(format!("{up}../{}/index.html", library(krate)))
+            }
+            _ => Target::File(path),
         }
     }
+}
+
+/// Where a link leads.
+enum Target {
+    /// A page, a picture or a crate of the site, relative to the page; or an address.
+    Site(String),
+    /// A file or a folder of the repository.
+    File(String),
+}
+
+/// The copy of a file in the book: as text, since a browser saves a file of unknown type.
+fn copy_of(path: &str) -> String {
+    format!("{FILES}/{path}.txt")
 }
 
 /// The library in a folder of `crates`.
@@ -93,16 +134,18 @@ mod tests {
     use super::Page;
 
     #[test]
-    fn links_lead_to_pages_crates_pictures_and_the_repository() {
+    fn links_lead_to_pages_crates_pictures_and_copies_of_files() {
         let page = Page::of("docs/adr/0001-records.md").unwrap();
-        let text = "[a](../slam.md#walls) ![b](../img/a.svg) [c](../../crates/slam-ekf) [d](../../fixtures/a.toml) [e](https://x.y) [f](#g)";
+        let text = "[a](../slam.md#walls) ![b](../img/a.svg) [c](../../crates/slam-ekf) [d](../../fixtures/a.toml) [e](https://x.y) [f](#g) [h](../../xtask)";
         assert_eq!(
             page.rewritten(text).trim_end(),
-            format!(
-                "[a](../slam.html#walls) ![b](../img/a.svg) [c](../../wayfix_slam_ekf/index.html) \
-                 [d]({}/blob/main/fixtures/a.toml) [e](https://x.y) [f](#g)",
-                super::REPOSITORY
-            )
+            "[a](../slam.html#walls) ![b](../img/a.svg) [c](../../wayfix_slam_ekf/index.html) \
+             [d](../files/fixtures/a.toml.txt) [e](https://x.y) [f](#g) [h](../files/xtask)"
+        );
+        let tracked = ["fixtures/a.toml", "fixtures/b.toml", "xtask/Cargo.toml"].map(String::from);
+        assert_eq!(
+            page.files(text, &tracked),
+            ["fixtures/a.toml", "xtask/Cargo.toml"].map(|file| (file.to_owned(), super::copy_of(file)))
         );
     }
 
