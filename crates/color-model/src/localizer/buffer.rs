@@ -41,18 +41,8 @@ impl FrameBuffer {
         self.0.back()
     }
 
-    /// At most `n` frames, evenly spaced, with the newest, and the odometry between them.
-    pub(crate) fn spaced(&self, n: usize) -> Vec<BufferedFrame> {
-        let stride = self.0.len().div_ceil(n.max(1)).max(1);
-        let mut chosen: Vec<BufferedFrame> = Vec::new();
-        let mut odometry = OdometryDelta::default();
-        for (at, frame) in self.0.iter().enumerate() {
-            odometry = odometry.then(&frame.odometry);
-            if (self.0.len() - 1 - at).is_multiple_of(stride) {
-                chosen.push(BufferedFrame { odometry, ..frame.clone() });
-                odometry = OdometryDelta::default();
-            }
-        }
-        chosen
+    /// All frames, the newest last.
+    pub(crate) fn frames(&self) -> Vec<BufferedFrame> {
+        self.0.iter().cloned().collect()
     }
 }

@@ -288,7 +288,7 @@ where
             return Ok(false);
         }
         let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
-        let frames = buffer.spaced(params.n_buffered_frames.div_ceil(2));
+        let frames = buffer.frames();
         // Once the view has turned by a tile, its tiles show something else.
         let tile = f64::from(self.params.pixels.tile_pixels) / self.camera.fx();
         let shares = frames.windows(2).map(|pair| (pair[0].view_change(&pair[1]) / tile).min(1.0));
@@ -307,7 +307,9 @@ where
         let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
         if is_start {
             let best = found.remove(0);
-            *present = best.filter;
+            if !best.is_known {
+                *present = best.filter;
+            } // else its particles know more than the search: they have seen every frame
             present.set_max_particles(self.params.max_particles);
             let even = found.into_iter().map(|one| (one.filter, one.log_evidence - best.log_evidence));
             relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;

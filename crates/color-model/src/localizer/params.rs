@@ -49,7 +49,7 @@ pub struct LocalizerParams {
     serde(default, deny_unknown_fields)
 )]
 pub struct GlobalSearchParams {
-    /// Number of frames that are kept, of which a search uses every second. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
+    /// Number of frames that are kept for a search. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
     /// Default 16.
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad; 0 never searches. Default 1.

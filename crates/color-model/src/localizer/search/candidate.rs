@@ -37,7 +37,7 @@ impl Candidate {
             light: FittedLight::default(),
             log_evidence: f64::NEG_INFINITY,
             log_likelihoods: Vec::new(),
-            steps: [0.5, 1.0],
+            steps: [0.0; 2],
             known: None,
         }
     }

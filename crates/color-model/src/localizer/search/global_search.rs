@@ -45,6 +45,11 @@ pub(crate) struct Search<'a, T> {
     cell: Vector3<f64>,
 }
 
+/// Scales of the first steps of a round, of the pose in cells and of the errors in standard deviations: half of those of the round before.
+fn first_steps(round: u32) -> [f64; 2] {
+    [0.5, 1.0].map(|step| step / f64::from(1 << round))
+}
+
 /// A place that explains the frames.
 pub(crate) struct Found<T> {
     pub(crate) filter: ColorFilter<T>,
@@ -107,6 +112,10 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames: 2 << round };
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.evidence.fit(scratch, candidate, effort, true);
+                if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
+                    return; // The filter knows it from all frames: some of them would lead it away.
+                }
+                candidate.steps = first_steps(round);
                 for _ in 0..params.n_first_round_moves << round {
                     self.refine(scratch, candidate, effort, rng);
                 }
@@ -229,7 +238,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         5 * n_better > candidate.log_likelihoods.len()
     }
 
-    /// Particles about a candidate, spread by its last step, with the light that all frames show from there.
+    /// Particles about a candidate, spread as the last round explores it, with the light that all frames show from there.
     fn found<R: Rng + ?Sized>(
         &self,
         candidate: &Candidate,
@@ -242,8 +251,9 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut light = T::clone(lights[candidate.light.tracker]);
         let shown = self.evidence.shown(candidate, &locations);
         update_lights(&mut light, candidate.light.light, &shown, params);
+        let [spread, _] = first_steps(N_ROUNDS - 1);
         let location = |_| {
-            let mut body = candidate.trajectory.moved(&(self.cell * candidate.steps[0]), rng).newest;
+            let mut body = candidate.trajectory.moved(&(self.cell * spread), rng).newest;
             self.area.clamp(&mut body);
             CameraLocation { body, ..newest }
         };
