@@ -11,8 +11,6 @@ use wayfix_evaluation::{
 
 /// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;
-/// Position error (m) and heading error (degrees) from which on `tracking` is false.
-const FALSE_TRACKING: (f64, f64) = (0.25, 6.0);
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut ColorRun) -> ReportRun {
@@ -47,19 +45,13 @@ fn localization(run: &ColorRun) -> Vec<Metric> {
     ];
     metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
     metrics.extend(odometry(run));
-    metrics.push(Metric::new("n_false_tracking_frames", n_false_tracking(run) as f64, ""));
-    metrics
-}
-
-/// Frames that report tracking far from the truth.
-fn n_false_tracking(run: &ColorRun) -> usize {
-    let is_far = |sample: &PoseWithTruth| {
-        let (position, heading) = FALSE_TRACKING;
-        sample.position_error() > position || sample.heading_error().to_degrees() > heading
+    let is_false = |(frame, pose): &(&super::ColorFrameResult, PoseWithTruth)| {
+        let is_far = pose.position_error() > 0.25 || pose.heading_error().to_degrees() > 6.0; // docs/color.md
+        frame.status == LocalizationStatus::Tracking && is_far
     };
-    let samples = run.samples();
-    let tracked = samples.iter().filter(|(frame, _)| frame.status == LocalizationStatus::Tracking);
-    tracked.filter(|(_, sample)| is_far(sample)).count()
+    let n_false = run.samples().into_iter().filter(is_false).count();
+    metrics.push(Metric::new("n_false_tracking_frames", n_false as f64, ""));
+    metrics
 }
 
 /// Error of dead reckoning from the same start.

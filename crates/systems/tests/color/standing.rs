@@ -50,7 +50,7 @@ fn field(name: &str) -> Option<PathBuf> {
 /// The frames of a bag again and again, with stamps that go on.
 fn repeated(records: &[Record], n: u64) -> Vec<Record> {
     let images = || records.iter().filter(|record| matches!(record.data, RecordData::Image(_)));
-    let (Some(first), Some(last)) = (images().next(), images().last()) else { return Vec::new() };
+    let (Some(first), Some(last)) = (images().next(), images().next_back()) else { return Vec::new() };
     let n_images = images().count() as u64;
     let length = (last.stamp.nanoseconds() - first.stamp.nanoseconds()) * n_images / (n_images - 1);
     let again = |round: u64| {
