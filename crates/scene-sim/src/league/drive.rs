@@ -25,7 +25,7 @@ pub struct LeagueFrame {
     pub mount: Pose3<f64>,
     /// True pose of the camera in the world.
     pub camera_pose: Pose3<f64>,
-    /// Which lamps are on.
+    /// The light.
     pub lighting: LampSetting,
     /// The image with its true labels.
     pub picture: LeaguePicture,
@@ -84,6 +84,9 @@ impl LeagueDrive {
     ) -> Result<Self, SimulationError> {
         params.validate(&venue.camera)?;
         venue.camera.exposure_mode = params.exposure_mode;
+        if matches!(params.lamp_settings.first(), Some((0, LampSetting::Sunny))) {
+            venue.expose_for_sun();
+        }
         let grey = |paint: &LinearRgb| LinearRgb::repeat(paint.mean() * (1.0 - params.paint_chroma));
         venue.paints = venue.paints.map(|paint| grey(&paint) + paint * params.paint_chroma);
         let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;

@@ -13,6 +13,7 @@ mod params;
 mod picture;
 mod records;
 mod robot;
+mod sun;
 mod things;
 mod venue;
 mod yuv;
@@ -30,5 +31,6 @@ pub use picture::{
 pub use robot::{
     BodySwayParams, FieldWalkParams, GaitOdometryParams, LeggedRobot, LeggedRobotParams, RobotHeadParams,
 };
+pub use sun::SunThroughWindows;
 pub use things::UnmappedObjects;
 pub use venue::{LampSetting, LeagueVenue};

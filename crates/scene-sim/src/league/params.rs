@@ -12,7 +12,8 @@ pub struct LeagueParams {
     pub period_ms: u32,
     /// Seed of the venue; with `None` the venue belongs to the seed of the drive. Default `None`.
     pub venue_seed: Option<u64>,
-    /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first.
+    /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first. If frame 0
+    /// is sunny, the camera's gain is set for the sun.
     pub lamp_settings: Vec<(usize, LampSetting)>,
     /// Start pose; `None` for a random one on the field. Default `None`.
     pub start: Option<Pose2<f64>>,

@@ -1,7 +1,10 @@
 use nalgebra::Vector3;
 use rand::Rng;
 
-use super::{CameraParams, HallBackdrop, Lamp, LampLight, LinearRgb, N_COLORS, black_body};
+use super::{
+    CameraParams, HallBackdrop, Lamp, LampLight, LightField, LinearRgb, N_COLORS, SunThroughWindows,
+    black_body,
+};
 use crate::SimulationError;
 use crate::random::deviate::{below, chance, normal, uniform};
 
@@ -20,19 +23,23 @@ pub struct LeagueVenue {
     pub bright: LampLight,
     /// All lamps off but one.
     pub dark: LampLight,
+    /// Everyday light, and the sun in at the windows.
+    pub sunny: SunThroughWindows,
     /// Surroundings of the field.
     pub hall: HallBackdrop,
     /// The camera; set for the everyday light and never changed.
     pub camera: CameraParams,
 }
 
-/// Which lamps are on.
+/// The light of a venue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LampSetting {
     /// Everyday light.
     Bright,
     /// All lamps off but one.
     Dark,
+    /// Everyday light, and the sun in at the windows.
+    Sunny,
 }
 
 impl LeagueVenue {
@@ -69,15 +76,22 @@ impl LeagueVenue {
             crowd: uniform(0.3, 0.8, rng),
             seed: rng.next_u64(),
         };
-        Ok(Self { paints, bright, dark, hall, camera })
+        let sunny = SunThroughWindows::draw(&bright, paints[0], &hall, rng);
+        Ok(Self { paints, bright, dark, sunny, hall, camera })
     }
 
-    /// The lamps that are on.
-    pub fn light(&self, lighting: LampSetting) -> &LampLight {
+    /// The light, of lamps and sun.
+    pub fn light(&self, lighting: LampSetting) -> &dyn LightField {
         match lighting {
             LampSetting::Bright => &self.bright,
             LampSetting::Dark => &self.dark,
+            LampSetting::Sunny => &self.sunny,
         }
+    }
+
+    /// Sets the camera's gain for the sun, as it was for the everyday light: white keeps its level, on average over the field.
+    pub fn expose_for_sun(&mut self) {
+        self.camera.gain *= mean_irradiance(&self.bright).y / self.sunny.mean_irradiance().y;
     }
 }
 
@@ -121,7 +135,6 @@ fn mean_luminance(lamps: &[Lamp]) -> f64 {
 }
 
 fn mean_irradiance(light: &LampLight) -> LinearRgb {
-    use super::LightField;
     let along = |half: f64| [-0.8, -0.4, 0.0, 0.4, 0.8].map(|share| share * half);
     let mut sum = LinearRgb::zeros();
     for x in along(2.1) {

@@ -1,7 +1,7 @@
 use super::{Scenario, ScenarioParams};
 use crate::league::{LampSetting, LeagueParams};
 
-/// The hall of all four scenarios, selected from 24 because its dark light shows best how seen colours predict an unseen one. It is not
+/// The hall of all scenarios, selected from 24 because its dark light shows best how seen colours predict an unseen one. It is not
 /// representative; for random halls use [`Scenario::with_seed`].
 const HALL: u64 = 2034;
 
@@ -14,6 +14,7 @@ pub(super) fn all() -> Vec<Scenario> {
         league("color_bright", 22, under(LampSetting::Bright)),
         league("color_switching", 23, switching()),
         league("color_kidnapped", 24, LeagueParams { kidnap_frames, ..under(LampSetting::Bright) }),
+        league("color_sun", 25, LeagueParams { n_frames: 200, ..under(LampSetting::Sunny) }),
     ]
 }
 

@@ -55,8 +55,8 @@ impl Scenario {
         catalogue::all()
     }
 
-    /// Those with a camera on the field of the four-legged league: `color_dark` (D1), `color_bright` (D2), `color_switching` (S) and
-    /// `color_kidnapped` (K). All four are in one hall, which is none of the training venues.
+    /// Those with a camera on the field of the four-legged league: `color_dark` (D1), `color_bright` (D2), `color_switching` (S),
+    /// `color_kidnapped` (K) and `color_sun`. All are in one hall, which is none of the training venues.
     #[cfg(feature = "league")]
     pub fn in_color() -> Vec<Self> {
         league::all()

@@ -2,9 +2,7 @@
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
 use wayfix_estimation_traits::nalgebra::Vector3;
-use wayfix_scene_sim::league::{
-    Lamp, LampLight, LampSetting, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body,
-};
+use wayfix_scene_sim::league::{Lamp, LampLight, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body};
 
 use crate::support::{Blank, channel, field_in, honest, looking, streams, take};
 
@@ -60,10 +58,48 @@ fn in_the_dark_one_lamp_of_the_same_hall_is_left() {
     for seed in 0..20 {
         let venue = LeagueVenue::draw(streams(seed).of(wayfix_scene_sim::random::RandomStreamPurpose::Venue))
             .expect("a venue");
-        let left_on = venue.light(LampSetting::Dark).lamps[0];
-        assert!(venue.light(LampSetting::Bright).lamps.contains(&left_on));
+        let left_on = venue.dark.lamps[0];
+        assert!(venue.bright.lamps.contains(&left_on));
         let middle = |light: &LampLight| light.irradiance(&Vector3::zeros(), &Vector3::z()).y;
         let share = middle(&venue.dark) / middle(&venue.bright);
         assert!((0.05..0.5).contains(&share), "one of four or six, nearer or further: {share}");
     }
+}
+
+#[test]
+fn sun_lies_in_patches_on_the_carpet_of_every_hall() {
+    for seed in 0..20 {
+        let venue = LeagueVenue::draw(streams(seed).of(wayfix_scene_sim::random::RandomStreamPurpose::Venue))
+            .expect("a venue");
+        let on_carpet = |x: i32, y: i32, light: &dyn LightField| {
+            light.irradiance(&Vector3::new(0.05 * f64::from(x), 0.05 * f64::from(y), 0.0), &Vector3::z()).y
+        };
+        let points: Vec<(i32, i32)> = (-42..=42).flat_map(|x| (-27..=27).map(move |y| (x, y))).collect();
+        let sun = |&&(x, y): &&(i32, i32)| {
+            on_carpet(x, y, &venue.sunny) - on_carpet(x, y, &venue.sunny.hall)
+                > 0.5 * venue.sunny.beam.y * venue.sunny.towards_sun.z
+        };
+        let share = points.iter().filter(sun).count() as f64 / points.len() as f64;
+        // Panes are 64 % of the wall; the grid is 5 cm wide and a pane 60 cm.
+        assert!((0.1..0.7).contains(&share), "seed {seed}: {share}");
+        let direct = venue.sunny.beam.y * venue.sunny.towards_sun.z;
+        let ratio = direct / on_carpet(0, 0, &venue.sunny.hall);
+        assert!(ratio > 2.0, "seed {seed}: more than lamps differ over a field, {ratio}");
+    }
+}
+
+#[test]
+fn edges_of_the_sun_are_as_wide_as_its_disc() {
+    let venue = LeagueVenue::draw(streams(1).of(wayfix_scene_sim::random::RandomStreamPurpose::Venue))
+        .expect("a venue");
+    let sun = &venue.sunny;
+    let in_beam = |millimetres: i32| {
+        let point = Vector3::new(0.001 * f64::from(millimetres), 0.0, 0.0);
+        let direct = sun.irradiance(&point, &Vector3::z()) - sun.hall.irradiance(&point, &Vector3::z());
+        direct.y / (sun.beam.y * sun.towards_sun.z)
+    };
+    // Two panes and their period of 1.88 m: four edges. The sun's diameter is 32 minutes of arc.
+    let n_in_edges = (0..1880).filter(|x| (0.001..0.999).contains(&in_beam(*x))).count();
+    let width = (32.0_f64 / 60.0).to_radians() * sun.wall_y_m / sun.towards_sun.y;
+    assert_abs_diff_eq!(n_in_edges as f64, 4000.0 * width, epsilon = 8.0); // a pixel of 1 mm at either end
 }

@@ -1,4 +1,5 @@
 use wayfix_color_map::ColorId;
+use wayfix_color_model::LocalizationStatus;
 use wayfix_estimation_traits::Pose2;
 
 use super::{ClassificationCounts, ColorRun, rate_of};
@@ -44,6 +45,12 @@ fn localization(run: &ColorRun) -> Vec<Metric> {
     ];
     metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
     metrics.extend(odometry(run));
+    let is_false = |(frame, pose): &(&super::ColorFrameResult, PoseWithTruth)| {
+        let is_far = pose.position_error() > 0.25 || pose.heading_error().to_degrees() > 6.0; // docs/color.md
+        frame.status == LocalizationStatus::Tracking && is_far
+    };
+    let n_false = run.samples().into_iter().filter(is_false).count();
+    metrics.push(Metric::new("n_false_tracking_frames", n_false as f64, ""));
     metrics
 }
 
