@@ -12,4 +12,4 @@ pub(crate) use frame_time::frame_time;
 pub(crate) use halls::other_halls;
 pub(crate) use switching::switching;
 pub(crate) use training::TrainingHalls;
-pub(crate) use withheld::{withheld, withheld_in_halls};
+pub(crate) use withheld::{compared, withheld, withheld_in_halls};
