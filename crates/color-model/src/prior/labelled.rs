@@ -129,11 +129,7 @@ impl Moments {
 
 impl TrainingVenue {
     /// A venue of labelled images; a colour with fewer than `min_pixels` pixels in an image is not seen there.
-    pub fn from_labelled_pixels(
-        name: impl Into<String>,
-        images: &[LabelledPixels],
-        min_pixels: u64,
-    ) -> Self {
+    pub fn from_labelled_pixels(name: impl Into<String>, images: &[LabelledPixels], min_pixels: u64) -> Self {
         let mut pixels = PooledPixelVariance { variances: Vector3::zeros(), degrees_of_freedom: 0.0 };
         for color in images.iter().flat_map(|image| &image.colors).filter(|color| color.is_seen(min_pixels)) {
             pixels.variances += color.squares - color.mean().component_mul(&color.sum);

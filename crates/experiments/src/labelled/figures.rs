@@ -59,7 +59,8 @@ pub(super) fn film(shown: &[(&Place, AdaptedLight)], colors: &[String]) -> Resul
         let color_of = |pixel: &[u8; 3]| {
             classifier.classify(*pixel).map(|ColorId(color)| usize::from(color) % colors.len())
         };
-        camera.push(FilmStripFrame { image: place.encoded.to_browser_format()?, caption: place.name.clone() });
+        camera
+            .push(FilmStripFrame { image: place.encoded.to_browser_format()?, caption: place.name.clone() });
         labels.push(frame(
             place.labels.iter().flat_map(|label| paint(usize::from(*label).checked_sub(1))).collect(),
         )?);
@@ -67,7 +68,8 @@ pub(super) fn film(shown: &[(&Place, AdaptedLight)], colors: &[String]) -> Resul
             .push(frame(place.image.pixels().iter().flat_map(|pixel| paint(color_of(pixel))).collect())?);
     }
     let film = FilmStrip {
-        title: "Images, labels of the map at the true pose, and the colour of each pixel in sun or shade".to_owned(),
+        title: "Images, labels of the map at the true pose, and the colour of each pixel in sun or shade"
+            .to_owned(),
         rows: vec![
             ("camera".to_owned(), camera),
             ("labels, grey for none".to_owned(), labels),

@@ -92,7 +92,7 @@ impl<'a> KnownPose<'a> {
             light.update_in(sun, &means(sun))?;
         }
         let shade = light.shade_of(sun).filter(|_| is_shaded);
-        let densities = |at: usize| Ok(pixels.shaded(light.colors_in(at)?));
+        let densities = |at: usize| -> Result<_> { Ok(pixels.shaded(light.colors_in(at)?)) };
         Ok(AdaptedLight { sun: densities(sun)?, shade: shade.map(densities).transpose()? })
     }
 

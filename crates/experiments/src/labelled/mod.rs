@@ -8,6 +8,7 @@
 //! * `prior`: under the prior alone.
 //! * `sun`: under the light that the image is mostly in, as `run color` classifies.
 //! * `sun_or_shade`: the most probable colour under either.
+//! * `built_in_prior_sun_or_shade`: the same from the built-in priors.
 //!
 //! Each colour is then withheld in turn, as in the lower half of [Schulz & Fox 2004, Table 1], with the joint prior and with the independent one.
 

@@ -6,7 +6,11 @@ use wayfix_systems::color::ClassificationCounts;
 use super::{known_pose::AdaptedLight, place::Place};
 
 /// Classifies the labelled pixels of a place by the densities of one light, or of several after each other: the most probable colour in any of them.
-pub(super) fn count(place: &Place, lights: &[&[ColorDensity]], n_colors: usize) -> Result<ClassificationCounts> {
+pub(super) fn count(
+    place: &Place,
+    lights: &[&[ColorDensity]],
+    n_colors: usize,
+) -> Result<ClassificationCounts> {
     let classifier = PixelClassifier::new(lights.iter().copied().flatten().copied())?;
     let mut by_color = vec![(0, 0); n_colors];
     for (pixel, label) in place.image.pixels().iter().zip(&place.labels) {

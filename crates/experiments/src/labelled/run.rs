@@ -1,6 +1,6 @@
 use std::{path::Path, sync::Arc};
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::{ColorDensity, LightingFilterBank, LightingPriors};
@@ -32,9 +32,11 @@ pub fn run(folder: &Path, shown: &[String], params: &ColorSystemParams) -> Resul
     let stopwatch = Stopwatch::start();
     let map = Arc::new(read_map(&folder.join("field.toml"))?);
     let places = Place::read_all(&folder.join("images"), map.colors().len(), params)?;
+    let built_in = priors::built_in()?;
+    ensure!(built_in.colors() == map.colors(), "the colours are not those of the built-in priors");
     let tested = (0..places.len()).into_par_iter().map(|at| {
         let prior = prior_without(at, &places, map.colors())?;
-        TestedPlace::new(&places[at], &map, &prior, params)
+        TestedPlace::new(&places[at], &map, [&prior, &built_in], params)
     });
     let tested = tested.collect::<Result<Vec<_>>>()?;
     let mut metrics = vec![Metric::new("n_labelled_images", places.len() as f64, "")];
@@ -58,21 +60,28 @@ struct TestedPlace {
     name: String,
     prior: Vec<ColorDensity>,
     light: AdaptedLight,
-    /// With the prior, with the sun's light, with sun or shade.
-    counts: [ClassificationCounts; 3],
+    /// In the order of [`METHODS`].
+    counts: [ClassificationCounts; 4],
     /// Of each withheld colour, with the joint prior and with the independent one.
     withheld: Vec<[Option<f64>; 2]>,
 }
 
 impl TestedPlace {
-    fn new(place: &Place, map: &Arc<ColorMap>, learned: &LightingPriors, params: &ColorSystemParams) -> Result<Self> {
+    fn new(
+        place: &Place,
+        map: &Arc<ColorMap>,
+        [learned, built_in]: [&LightingPriors; 2],
+        params: &ColorSystemParams,
+    ) -> Result<Self> {
         let n_colors = map.colors().len();
         let banks = [priors::bank(learned, params)?, priors::bank(&learned.independent(), params)?];
         let pose = KnownPose::new(place, map, params)?;
         let prior = params.localizer.pixels.shaded(banks[0].member(0).colors());
         let light = pose.adapt(banks[0].clone(), None)?;
-        let counts = [vec![prior.as_slice()], vec![light.sun.as_slice()], light.lights()];
-        let [a, b, c] = counts.map(|lights| count(place, &lights, n_colors));
+        let from_built_in = pose.adapt(priors::bank(built_in, params)?, None)?;
+        let lights =
+            [vec![prior.as_slice()], vec![light.sun.as_slice()], light.lights(), from_built_in.lights()];
+        let [a, b, c, d] = lights.map(|lights| count(place, &lights, n_colors));
         let withheld = (0..n_colors).map(|color| {
             let rate = |bank: &LightingFilterBank| -> Result<Option<f64>> {
                 let light = pose.adapt(bank.clone(), Some(color))?;
@@ -82,11 +91,11 @@ impl TestedPlace {
             Ok([rate(&banks[0])?, rate(&banks[1])?])
         });
         let withheld = withheld.collect::<Result<_>>()?;
-        Ok(Self { name: place.name.clone(), prior, light, counts: [a?, b?, c?], withheld })
+        Ok(Self { name: place.name.clone(), prior, light, counts: [a?, b?, c?, d?], withheld })
     }
 }
 
-const METHODS: [&str; 3] = ["prior", "sun", "sun_or_shade"];
+const METHODS: [&str; 4] = ["prior", "sun", "sun_or_shade", "built_in_prior_sun_or_shade"];
 
 /// Rates of all labelled pixels of an image, and of each colour, as means over images; and of each image.
 fn classified(tested: &[TestedPlace], colors: &[String]) -> Vec<Metric> {

@@ -3,7 +3,8 @@ use std::{collections::BTreeMap, fs, path::PathBuf, process::ExitCode};
 use anyhow::{Context, Result, ensure};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_model::{
-    LabelledPixels, LightingFilterParams, LightingPriorError, LightingPriors, PriorLearningParams, TrainingVenue, learn_grouped_priors, split_by_brightness,
+    LabelledPixels, LightingFilterParams, LightingPriorError, LightingPriors, PriorLearningParams,
+    TrainingVenue, learn_grouped_priors, split_by_brightness,
 };
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_systems::color::{ColorSystemParams, priors, read_map};
@@ -82,8 +83,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         }
     };
     let found = LabelledImages::find(&arguments.images, &arguments.labels)?;
-    note_names(&found.without_labels, "images have no labels");
-    note_names(&found.without_image, "labels have no image");
+    note_names(&found.without_labels, "images without labels");
+    note_names(&found.without_image, "labels without an image");
     let chosen = grouped(&found.images, &arguments)?;
 
     let (mut venues, mut images) = (Vec::new(), Vec::new());
@@ -132,13 +133,8 @@ fn grouped<'a>(images: &'a [LabelledImage], arguments: &Arguments) -> Result<Gro
         }
     }
     let unknown: Vec<&str> = table.venue_of.keys().map(String::as_str).collect();
-    ensure!(
-        unknown.is_empty(),
-        "{}: no labelled image has the name {}",
-        path.display(),
-        unknown.join(", ")
-    );
-    note_names(&left_out, &format!("images are not in {} and left out", path.display()));
+    ensure!(unknown.is_empty(), "{}: no labelled image has the name {}", path.display(), unknown.join(", "));
+    note_names(&left_out, &format!("images that {} does not name, left out", path.display()));
     Ok(GroupedImages { venues: venues.into_iter().collect(), light_of: table.light_of })
 }
 
@@ -157,7 +153,11 @@ impl GroupedImages<'_> {
                 .with_context(|| format!("--lights {k}"))?;
             return Ok(((1..=k).map(|light| format!("light {light}")).collect(), lights));
         }
-        ensure!(arguments.lights == 1, "--lights {}: the CSV file names the kinds of light", arguments.lights);
+        ensure!(
+            arguments.lights == 1,
+            "--lights {}: the CSV file names the kinds of light",
+            arguments.lights
+        );
         let mut names: Vec<String> = Vec::new();
         let lights = venues.iter().map(|venue| {
             let light = &self.light_of[&venue.name];
@@ -198,10 +198,9 @@ const MOST_NAMED: usize = 3;
 
 fn note_names(names: &[String], what: &str) {
     let first = names.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
-    match names.len() {
-        0 => {}
-        n if n > MOST_NAMED => note(format!("{n} {what}: {first}, …")),
-        n => note(format!("{n} {what}: {first}")),
+    let more = if names.len() > MOST_NAMED { ", …" } else { "" };
+    if !names.is_empty() {
+        note(format!("{what}: {} ({first}{more})", names.len()));
     }
 }
 

@@ -3,7 +3,12 @@ use std::fmt::Write;
 use wayfix_color_model::{LabelledPixels, LightingPriors, PriorLearningParams, TrainingVenue};
 
 /// What was learned, as a table.
-pub(super) fn table(priors: &LightingPriors, lights: &[String], images: &[LabelledPixels], min_pixels: u64) -> String {
+pub(super) fn table(
+    priors: &LightingPriors,
+    lights: &[String],
+    images: &[LabelledPixels],
+    min_pixels: u64,
+) -> String {
     let width = priors.colors().iter().map(|name| name.chars().count()).max().unwrap_or(0).max(6);
     let mut text = format!("{:width$}  images    pixels\n", "colour");
     for (color, name) in priors.colors().iter().enumerate() {
@@ -38,7 +43,10 @@ pub(super) fn losses(colors: &[String], images: &[LabelledPixels], min_pixels: u
         let is_small = |image: &&LabelledPixels| (1..min_pixels).contains(&image.n_pixels(color));
         let n = images.iter().filter(is_small).count();
         if n > 0 {
-            notes.push(format!("{name} has fewer than {min_pixels} pixels in {n} images: not used there"));
+            notes.push(format!(
+                "{name}: fewer than {min_pixels} pixels in {n} of {} images, not used there",
+                images.len()
+            ));
         }
     }
     let n_colors = colors.len();
@@ -55,14 +63,33 @@ pub(super) fn losses(colors: &[String], images: &[LabelledPixels], min_pixels: u
 }
 
 /// What these venues cannot tell, and what is assumed instead.
-pub(super) fn assumptions(venues: &[TrainingVenue], lights: &[usize], names: &[String], params: &PriorLearningParams) -> Vec<String> {
+pub(super) fn assumptions(
+    venues: &[TrainingVenue],
+    lights: &[usize],
+    names: &[String],
+    params: &PriorLearningParams,
+) -> Vec<String> {
     let [y, u, v] = [0, 1, 2].map(|at| params.prior_color_sigmas[at]);
-    let spread = format!("σ {y}, {u}, {v} (Y, U, V) between venues, and a correlation of {} of any two colours", params.prior_color_correlation);
+    let spread = format!(
+        "σ {y}, {u}, {v} (Y, U, V) between venues, and a correlation of {} of any two colours",
+        params.prior_color_correlation
+    );
     let note = |(light, name): (usize, &String)| {
-        let of_light: Vec<&str> = venues.iter().zip(lights).filter(|(_, l)| **l == light).map(|(venue, _)| venue.name.as_str()).collect();
+        let of_light: Vec<&str> = venues
+            .iter()
+            .zip(lights)
+            .filter(|(_, l)| **l == light)
+            .map(|(venue, _)| venue.name.as_str())
+            .collect();
         match of_light[..] {
-            [one] => format!("{name}: the one venue {one} cannot tell how colours change together between venues; assumed: {spread}"),
-            _ => format!("{name}: {} venues, and an assumed spread that counts as {} more: {spread}", of_light.len(), params.n_pseudo_venues),
+            [one] => format!(
+                "{name}: the one venue {one} cannot tell how colours change together between venues; assumed: {spread}"
+            ),
+            _ => format!(
+                "{name}: {} venues, and an assumed spread that counts as {} more: {spread}",
+                of_light.len(),
+                params.n_pseudo_venues
+            ),
         }
     };
     names.iter().enumerate().map(|(at, name)| note((at, name))).collect()

@@ -60,7 +60,8 @@ mod tests {
 
     #[test]
     fn columns_are_image_venue_and_light() {
-        let table = VenueTable::parse("# mine\nimage, venue, light\nr1, lab, sun\nr2.jpg, lab, sun\n").unwrap();
+        let table =
+            VenueTable::parse("# mine\nimage, venue, light\nr1, lab, sun\nr2.jpg, lab, sun\n").unwrap();
         assert_eq!(table.venue_of["r2.jpg"], "lab");
         assert_eq!(table.light_of["lab"], "sun");
         assert!(VenueTable::parse("image,venue\nr1,lab\n").unwrap().light_of.is_empty());

@@ -45,8 +45,8 @@ pub(in crate::cli) struct Arguments {
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
     map: Option<PathBuf>,
-    /// Priors of the colours, one Gaussian per kind of light, as JSON [default: dark and bright light on the colours of the four-legged
-    /// league].
+    /// Priors of the colours, one Gaussian per kind of light, as JSON, from `wayfix learn-priors` [default: dark and bright light on the
+    /// colours of the four-legged league].
     #[arg(long, value_name = "FILE")]
     priors: Option<PathBuf>,
     /// Write the built-in priors to a file, and end: the form of one's own.
