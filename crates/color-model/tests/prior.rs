@@ -195,7 +195,7 @@ fn edges_and_balls_do_not_move_the_mean_of_a_colour() {
 fn labels_of_another_size_or_of_no_colour_are_refused() {
     let (pixels, mut labels) = labelled(&mut ChaCha8Rng::seed_from_u64(18));
     let image = YuvImage::new(20, 20, pixels).unwrap();
-    let mut read = |size: (u32, u32), n: usize| LabelledPixels::from_image(&image, size, &labels[..n], 2);
+    let read = |size: (u32, u32), n: usize| LabelledPixels::from_image(&image, size, &labels[..n], 2);
     for (size, n) in [((10, 40), 400), ((20, 19), 380), ((20, 20), 380)] {
         let refused = LightingPriorError::LabelSize { image: (20, 20), labels: size };
         assert_eq!(read(size, n), Err(refused));

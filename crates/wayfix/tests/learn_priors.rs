@@ -160,7 +160,7 @@ fn images_without_labels_and_small_colours_are_counted() {
 #[test]
 fn wrong_labels_are_refused_by_name() {
     let scratch = painted(&[1.0, 1.02]);
-    let mut spoil = |labels: &EncodedImage, what: &str| {
+    let spoil = |labels: &EncodedImage, what: &str| {
         save(&scratch, "b_labels.png", labels);
         let outcome = learn(&scratch, &[]);
         refused(&outcome, what);
