@@ -5,6 +5,7 @@ mod common;
 
 use std::{fs, path::Path};
 
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use common::{Outcome, Scratch, wayfix};
 use wayfix_color_map::ColorId;
 use wayfix_color_model::{LightingPriors, YuvStandard};
@@ -94,11 +95,11 @@ fn one_venue_gives_its_means_and_says_what_it_assumes() {
         for channel in 0..3 {
             let mean = 0.5 * (f64::from(a[channel]) + f64::from(b[channel]));
             let learned = priors.members()[0].mean()[3 * color + channel];
-            assert!((learned - mean).abs() < 0.5, "{color}, {channel}: {learned} of {mean}");
+            assert_abs_diff_eq!(learned, mean, epsilon = 0.5);
         }
     }
     // One venue adds no spread: three quarters of the assumed variance of 30² remain.
-    assert!((priors.members()[0].covariance()[(0, 0)] / 675.0 - 1.0).abs() < 0.02);
+    assert_relative_eq!(priors.members()[0].covariance()[(0, 0)], 675.0, max_relative = 0.02);
     let picture = fs::read_to_string(scratch.path("priors.svg")).unwrap();
     assert!(picture.starts_with("<svg") && picture.contains("pink"));
 }
@@ -119,10 +120,9 @@ fn kinds_of_light_come_from_the_table_or_from_brightness() {
     }
     assert_eq!(means[0], means[1]);
     // White has Y 179 in the light 1.
-    assert!(
-        (means[0][0] - 0.51 * 179.0).abs() < 2.0 && (means[0][1] - 1.02 * 179.0).abs() < 2.0,
-        "{means:?}"
-    );
+    for (mean, light) in means[0].into_iter().zip([0.51, 1.02]) {
+        assert_abs_diff_eq!(mean, light * 179.0, epsilon = 2.0);
+    }
     refused(&learn(&scratch, &["--groups", &table(named), "--lights", "2"]), "names the kinds of light");
     refused(&learn(&scratch, &["--groups", &table(plain), "--lights", "3"]), "--lights 3");
     refused(&learn(&scratch, &["--groups", &table("image,venue\nz,roof\n")]), "the name z");
