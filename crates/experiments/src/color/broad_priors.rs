@@ -16,7 +16,7 @@ const SEED: u64 = 2004;
 /// So many that the hyperprior, of three venues, does not count.
 const N_VENUES: usize = 1000;
 /// Standard deviation of the logarithm of a reflectance, red, green and blue each. A map names a colour, not a paint: pots of one paint differ by 0.05, the
-/// four greens of the ColorChecker [McCamy et al. 1976] by 0.4 to 0.6; chosen between the two before any run.
+/// four greens of the ColorChecker [McCamy et al. 1976] by 0.4 to 0.6; a value between the two.
 const PAINT_SIGMA: f64 = 0.25;
 /// Warmest lamps [ANSI C78.377] and blue sky [CIE 15], in mired, 10⁶ over kelvin, in which equal steps look equal.
 const MIREDS: std::ops::Range<f64> = 1e6 / 10_000.0..1e6 / 2_700.0;
