@@ -17,7 +17,7 @@ pub use frame::{PixelSums, PrefixSumImage, TileRegion, TileSums, TiledImage};
 pub use lighting::{
     ColorDensity, ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
     LightingDrift, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker,
-    SelectedLightingFilter, UnseenColorRule,
+    SelectedLightingFilter, SunAndShade, UnseenColorRule,
 };
 pub use likelihood::{
     CameraPoseLikelihood, EitherLikelihood, FeatureLikelihood, FeatureLikelihoodParams,
@@ -31,7 +31,7 @@ pub use localizer::{
     StartPosePrior,
 };
 pub use prior::{
-    KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,
-    k_means, learn_priors, split_by_brightness,
+    KMeans, LabelledPixels, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams,
+    TrainingVenue, inner_labels, k_means, learn_grouped_priors, learn_priors, split_by_brightness,
 };
 pub use yuv::{YuvImage, YuvStandard};

@@ -6,8 +6,9 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::ColorId;
 use wayfix_color_model::{
-    ColorMeans, LightingFilter, LightingFilterParams, LightingPriorError, LightingPriors,
-    PooledPixelVariance, PriorLearningParams, TrainingVenue, learn_priors, split_by_brightness,
+    ColorMeans, LabelledPixels, LightingFilter, LightingFilterParams, LightingPriorError, LightingPriors,
+    PooledPixelVariance, PriorLearningParams, TrainingVenue, YuvImage, learn_grouped_priors, learn_priors,
+    split_by_brightness,
 };
 
 const COLORS: [&str; 3] = ["green", "white", "pink"];
@@ -135,10 +136,11 @@ fn venues_that_make_no_prior_are_refused() {
         };
         good.iter().map(strip).collect()
     };
-    assert_eq!(
-        learn(&without(1), 2, &params),
-        Err(LightingPriorError::UnseenColor { group: 0, color: "white".to_owned() })
-    );
+    let Err(LightingPriorError::UnseenColor { color, venues: unlabelled }) = learn(&without(1), 2, &params)
+    else {
+        panic!("no image shows white")
+    };
+    assert_eq!((color.as_str(), unlabelled.len()), ("white", 15), "the dark halls");
     let mut blank = good.clone();
     blank[4].images.clear();
     assert!(matches!(learn(&blank, 2, &params), Err(LightingPriorError::Blank { .. })));
@@ -152,6 +154,72 @@ fn venues_that_make_no_prior_are_refused() {
         .map(|venue| TrainingVenue { images: venue.images[..1].to_vec(), ..venue.clone() })
         .collect();
     assert!(matches!(learn(&single, 2, &params), Err(LightingPriorError::UnknownScatter)));
+}
+
+/// Carpet of 20 × 20 pixels with noise of ±2 levels and a white line of 4 columns, and their labels.
+fn labelled(rng: &mut ChaCha8Rng) -> (Vec<[u8; 3]>, Vec<u8>) {
+    let at = |k: usize| if (8..12).contains(&(k % 20)) { ([200, 128, 128], 2) } else { ([80, 110, 100], 1) };
+    let (mut pixels, labels): (Vec<[u8; 3]>, Vec<u8>) = (0..400).map(at).unzip();
+    pixels.iter_mut().flatten().for_each(|value| *value = *value - 2 + rng.random_range(0..5));
+    (pixels, labels)
+}
+
+#[test]
+fn edges_and_balls_do_not_move_the_mean_of_a_colour() {
+    let rng = &mut ChaCha8Rng::seed_from_u64(17);
+    let (mut pixels, labels) = labelled(rng);
+    for row in 5..9 {
+        pixels[20 * row + 1..20 * row + 5].fill([150, 60, 160]); // a ball on the carpet: 16 of 280 pixels inside
+    }
+    for row in 0..20 {
+        pixels[20 * row + 8] = [140, 119, 114]; // mixed
+    }
+    let image = YuvImage::new(20, 20, pixels).unwrap();
+    let read = LabelledPixels::from_image(&image, (20, 20), &labels, 3).unwrap();
+    // Two columns on either side of both edges of the line.
+    assert_eq!((read.n_edge_pixels(), read.n_outliers()), (80, 16));
+    assert_eq!([0, 1, 2].map(|color| read.n_pixels(color)), [264, 40, 0]);
+    let means = read.means(3);
+    let green = means.mean(ColorId(0)).unwrap() - Vector3::new(80.0, 110.0, 100.0);
+    // Five standard errors of 264 uniform numbers of variance 2.
+    assert!(green.amax() < 5.0 * (2.0_f64 / 264.0).sqrt(), "{green}");
+    assert_eq!((means.mean(ColorId(2)), read.means(41).mean(ColorId(1))), (None, None));
+    let venue = TrainingVenue::from_labelled_pixels("lab", &[read], 3);
+    let spread = venue.pixels.unwrap();
+    assert_eq!(spread.degrees_of_freedom, 302.0);
+    // The standard error of a variance of 302 numbers is 8 % for a Gaussian, less for uniform ones.
+    assert!((spread.variances / 2.0).iter().all(|ratio| (ratio - 1.0).abs() < 0.4), "{}", spread.variances);
+}
+
+#[test]
+fn labels_of_another_size_or_of_no_colour_are_refused() {
+    let (pixels, mut labels) = labelled(&mut ChaCha8Rng::seed_from_u64(18));
+    let image = YuvImage::new(20, 20, pixels).unwrap();
+    let read = |size: (u32, u32), n: usize| LabelledPixels::from_image(&image, size, &labels[..n], 2);
+    for (size, n) in [((10, 40), 400), ((20, 19), 380), ((20, 20), 380)] {
+        let refused = LightingPriorError::LabelSize { image: (20, 20), labels: size };
+        assert_eq!(read(size, n), Err(refused));
+    }
+    labels[3..6].fill(255);
+    let refused = LightingPriorError::UnknownLabel { label: 255, n_pixels: 3, n_colors: 2 };
+    assert_eq!(LabelledPixels::from_image(&image, (20, 20), &labels, 2), Err(refused));
+}
+
+#[test]
+fn one_venue_keeps_the_assumed_spread() {
+    let rng = &mut ChaCha8Rng::seed_from_u64(19);
+    let one = [venue(1.0, rng)];
+    let params = PriorLearningParams::default();
+    let priors = learn_grouped_priors(&colors(), &one, &[0], &params).unwrap();
+    let covariance = priors.members()[0].covariance();
+    // The mode of the posterior: three pseudo-venues of 30² and one venue at its own mean.
+    let share = covariance[(0, 0)] / (0.75 * 900.0);
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+    let correlation = covariance[(0, 3)] / (covariance[(0, 0)] * covariance[(3, 3)]).sqrt();
+    assert!((correlation - 0.9).abs() < 0.02, "{correlation}");
+    let mismatch = LightingPriorError::Dimension { what: "kinds of light of venues", expected: 1, got: 2 };
+    assert_eq!(learn_grouped_priors(&colors(), &one, &[0, 0], &params), Err(mismatch));
+    assert!(learn_grouped_priors(&colors(), &one, &[1], &params).is_err(), "no venue of the light 0");
 }
 
 #[cfg(feature = "serde")]

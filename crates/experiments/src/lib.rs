@@ -1,7 +1,7 @@
 //! Reproduction of the papers: plans of runs on stored logs and on public recordings, their bounds, and a report of all.
 //!
 //! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots; `color`,
-//! `cml`, [`films`], [`corridor`], `simplification` and [`venues`] are those of one system each.
+//! `cml`, [`films`], [`corridor`], [`labelled`], `simplification` and [`venues`] are those of one system each.
 
 pub mod cli;
 mod cml;
@@ -11,6 +11,7 @@ pub mod corridor;
 mod error_quantiles;
 pub mod films;
 pub mod fixtures;
+pub mod labelled;
 pub mod monobot;
 pub mod regress;
 mod simplification;

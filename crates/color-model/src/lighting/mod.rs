@@ -13,5 +13,6 @@ pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;
 pub use params::{LightingDrift, LightingFilterParams, UnseenColorRule};
-pub(crate) use tracker::SunAndShade;
-pub use tracker::{Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingTracker};
+pub use tracker::{
+    Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingTracker, SunAndShade,
+};

@@ -31,12 +31,30 @@ pub enum LightingPriorError {
         name: String,
     },
     /// A colour that no image of a group of venues shows.
-    #[error("no image of group {group} shows {color}")]
+    #[error("no image of {} shows {color}: label it in one of them", .venues.join(", "))]
     UnseenColor {
-        /// Which group, from dark to bright.
-        group: usize,
+        /// The names of the venues.
+        venues: Vec<String>,
         /// The colour's name.
         color: String,
+    },
+    /// Labels of another size than their image.
+    #[error("the image has {} × {} pixels, its labels {} × {}", .image.0, .image.1, .labels.0, .labels.1)]
+    LabelSize {
+        /// Columns and rows.
+        image: (u32, u32),
+        /// Columns and rows.
+        labels: (u32, u32),
+    },
+    /// A label of no colour.
+    #[error("{n_pixels} pixels have the label {label}: colours have 1 to {n_colors}, anything else 0")]
+    UnknownLabel {
+        /// The label.
+        label: u8,
+        /// Number of pixels with it.
+        n_pixels: usize,
+        /// Number of colours.
+        n_colors: usize,
     },
     /// A number that is NaN, infinite or out of range.
     #[error("{what} is {value}")]

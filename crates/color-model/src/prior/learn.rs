@@ -39,22 +39,45 @@ pub fn learn_priors<R: Rng + ?Sized>(
     params: &PriorLearningParams,
     rng: &mut R,
 ) -> Result<LightingPriors, LightingPriorError> {
+    params.check()?;
+    let lights = split_by_brightness(venues, colors.len(), k, params.n_restarts, rng)?;
+    learn_grouped_priors(colors, venues, &lights, params)
+}
+
+/// [`learn_priors`] of venues whose kind of light is known: `lights` has that of each venue, from 0 on.
+///
+/// # Errors
+/// As for [`learn_priors`], and if `lights` is not as long as `venues` or a kind of light has no venue.
+pub fn learn_grouped_priors(
+    colors: &[String],
+    venues: &[TrainingVenue],
+    lights: &[usize],
+    params: &PriorLearningParams,
+) -> Result<LightingPriors, LightingPriorError> {
     let n_colors = colors.len();
     params.check()?;
-    let split = split_by_brightness(venues, n_colors, k, params.n_restarts, rng)?;
+    venues.iter().try_for_each(|venue| venue.check(n_colors))?;
+    if lights.len() != venues.len() {
+        let (what, expected, got) = ("kinds of light of venues", venues.len(), lights.len());
+        return Err(LightingPriorError::Dimension { what, expected, got });
+    }
     let mean_color_variance =
         params.mean_color_variance.map_or_else(|| pooled_mean_color_variance(venues, n_colors), Ok)?;
     let pixel_color_variance = pooled_pixel_color_variance(venues, &params.pixel_color_variance);
     let hierarchical = params.hierarchical(n_colors)?;
+    let k = lights.iter().max().map_or(0, |last| last + 1);
     let mut members = Vec::with_capacity(k);
-    for group in 0..k {
-        let chosen = venues.iter().zip(&split).filter(|(_, g)| **g == group);
+    for light in 0..k {
+        let chosen: Vec<&TrainingVenue> =
+            venues.iter().zip(lights).filter(|(_, l)| **l == light).map(|(venue, _)| venue).collect();
         let groups = chosen
-            .map(|(venue, _)| evidence(venue, n_colors, &mean_color_variance))
+            .iter()
+            .map(|venue| evidence(venue, n_colors, &mean_color_variance))
             .collect::<Result<Vec<_>, _>>()?;
         let fit = fit_hierarchical(&groups, &hierarchical).map_err(|error| match error {
             IterationError::Step(GaussianError::Unobserved { coordinate }) => {
-                LightingPriorError::UnseenColor { group, color: colors[coordinate / 3].clone() }
+                let venues = chosen.iter().map(|venue| venue.name.clone()).collect();
+                LightingPriorError::UnseenColor { venues, color: colors[coordinate / 3].clone() }
             }
             error => error.into(),
         })?;

@@ -2,7 +2,10 @@ use std::{fs, path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
 
-use crate::{color::TrainingHalls, fixtures};
+use crate::{
+    color::{TrainingHalls, learn_broad_priors},
+    fixtures,
+};
 use wayfix_evaluation::terminal::print;
 
 #[derive(clap::Subcommand)]
@@ -19,6 +22,9 @@ pub(super) enum Command {
         /// Number of kinds of light, from dark to bright.
         #[arg(long, default_value_t = 2)]
         lights: usize,
+        /// Of any lamp and any camera, instead of the simulated halls.
+        #[arg(long)]
+        broad: bool,
     },
 }
 
@@ -33,8 +39,12 @@ pub(super) fn main(command: Command) -> Result<ExitCode> {
     let (stored, verb) = match &command {
         Command::Build(arguments) => (fixtures::build(&arguments.folder)?, "wrote"),
         Command::Check(arguments) => (fixtures::check(&arguments.folder)?, "same"),
-        Command::Priors { file, lights } => {
-            let text = serde_json::to_string(&TrainingHalls::default().learn_priors(*lights)?)? + "\n";
+        Command::Priors { file, lights, broad } => {
+            let learned = match broad {
+                true => learn_broad_priors(*lights)?,
+                false => TrainingHalls::default().learn_priors(*lights)?,
+            };
+            let text = serde_json::to_string(&learned)? + "\n";
             fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
             return Ok(ExitCode::SUCCESS);
         }

@@ -1,5 +1,6 @@
 //! The experiments of the paper, and further ones, for `wayfix-experiments regress color`.
 
+mod broad_priors;
 mod convergence;
 mod frame_time;
 mod halls;
@@ -7,9 +8,10 @@ mod switching;
 mod training;
 mod withheld;
 
+pub(crate) use broad_priors::learn_broad_priors;
 pub(crate) use convergence::{global_start, kidnapped};
 pub(crate) use frame_time::frame_time;
 pub(crate) use halls::other_halls;
 pub(crate) use switching::switching;
 pub(crate) use training::TrainingHalls;
-pub(crate) use withheld::{withheld, withheld_in_halls};
+pub(crate) use withheld::{compared, withheld, withheld_in_halls};

@@ -4,8 +4,8 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingFilterBank,
-    LightingTracker, PixelClassifier, PixelLikelihoodParams, YuvImage, YuvStandard,
+    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LabelledPixels,
+    LightingFilterBank, LightingTracker, PixelClassifier, PixelLikelihoodParams, YuvImage, YuvStandard,
 };
 use wayfix_kalman::JumpMarkovFilterParams;
 use wayfix_sensor_log::{DecodedImage, Record, RecordData, Stamp};
@@ -142,15 +142,11 @@ fn labelled_frames(records: &[Record], yuv: YuvStandard, n_colors: usize) -> Res
 /// The mean of every colour's labelled pixels, where there are at least 30.
 fn means(image: &YuvImage, labels: &DecodedImage, n_colors: usize) -> ColorMeans {
     const MIN_PIXELS: u64 = 30;
-    let mut sums = vec![(Vector3::zeros(), 0_u64); n_colors];
+    let mut labelled = LabelledPixels::new(n_colors);
     for (pixel, label) in image.pixels().iter().zip(&labels.pixels) {
-        if let Some(sum) = label.checked_sub(1).and_then(|color| sums.get_mut(usize::from(color))) {
-            sum.0 += Vector3::from(pixel.map(f64::from));
-            sum.1 += 1;
-        }
+        labelled.add(*label, &Vector3::from(pixel.map(f64::from)));
     }
-    let mean = |(sum, n): (Vector3<f64>, u64)| ((n >= MIN_PIXELS).then(|| sum / n as f64), n);
-    ColorMeans::new(sums.into_iter().map(mean))
+    labelled.means(MIN_PIXELS)
 }
 
 /// The rate of every frame after the tracker has seen it.

@@ -6,9 +6,7 @@ use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
 };
-use wayfix_color_model::{
-    ColorMeans, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue, learn_priors,
-};
+use wayfix_color_model::{LabelledPixels, LightingPriors, PriorLearningParams, TrainingVenue, learn_priors};
 use wayfix_scene_sim::{
     league::{
         COLOR_NAMES, ExposureMode, LampSetting, LeagueDrive, LeagueParams, LeaguePicture, LeagueVenue,
@@ -30,7 +28,7 @@ pub(crate) struct TrainingHalls {
     /// Images of each under each light. Default 8.
     pub n_images: usize,
     /// Fewest pixels of a colour that make a mean. Default 30.
-    pub min_pixels: usize,
+    pub min_pixels: u64,
     /// As in [`LeagueParams`]. Default [`ExposureMode::Manual`].
     pub exposure_mode: ExposureMode,
     /// As in [`LeagueParams`]. Default 1.
@@ -85,53 +83,18 @@ impl TrainingHalls {
             paint_chroma: self.paint_chroma,
             ..LeagueParams::default()
         };
-        let mut pixels = PooledPixelVariance { variances: Vector3::zeros(), degrees_of_freedom: 0.0 };
-        let mut images = Vec::new();
-        for frame in LeagueDrive::in_venue(&params, venue, streams(seed))? {
-            images.push(self.means(&frame.picture, &mut pixels));
-        }
-        pixels.variances /= pixels.degrees_of_freedom.max(1.0);
+        let labelled = |picture: &LeaguePicture| {
+            let mut pixels = LabelledPixels::new(N_COLORS);
+            let grey = Vector3::new(0.0, 128.0, 128.0);
+            picture.yuv().zip(&picture.labels).for_each(|(yuv, label)| pixels.add(*label, &(yuv + grey)));
+            pixels
+        };
+        let images: Vec<LabelledPixels> = LeagueDrive::in_venue(&params, venue, streams(seed))?
+            .map(|frame| labelled(&frame.picture))
+            .collect();
         let light = if lighting == LampSetting::Dark { "dark" } else { "bright" };
-        Ok(TrainingVenue { name: format!("hall {hall:02} {light}"), images, pixels: Some(pixels) })
-    }
-
-    /// The mean of each colour; their scatter adds up in `pixels`.
-    fn means(&self, picture: &LeaguePicture, pixels: &mut PooledPixelVariance) -> ColorMeans {
-        let mut sums = [Moments::default(); N_COLORS];
-        for (yuv, &label) in picture.yuv().zip(&picture.labels) {
-            if let Some(sum) = usize::from(label).checked_sub(1).and_then(|color| sums.get_mut(color)) {
-                sum.add(&yuv);
-            }
-        }
-        let means = sums.map(|sum| {
-            let is_seen = sum.count >= self.min_pixels.max(2);
-            if is_seen {
-                pixels.variances += sum.squares - sum.mean().component_mul(&sum.sum);
-                pixels.degrees_of_freedom += (sum.count - 1) as f64;
-            }
-            (is_seen.then(|| sum.mean() + Vector3::new(0.0, 128.0, 128.0)), sum.count as u64)
-        });
-        ColorMeans::new(means)
-    }
-}
-
-/// Count, sum and sum of squares of the pixels of one colour.
-#[derive(Clone, Copy, Default)]
-struct Moments {
-    count: usize,
-    sum: Vector3<f64>,
-    squares: Vector3<f64>,
-}
-
-impl Moments {
-    fn add(&mut self, yuv: &Vector3<f64>) {
-        self.count += 1;
-        self.sum += yuv;
-        self.squares += yuv.component_mul(yuv);
-    }
-
-    fn mean(&self) -> Vector3<f64> {
-        self.sum / self.count as f64
+        let name = format!("hall {hall:02} {light}");
+        Ok(TrainingVenue::from_labelled_pixels(name, &images, self.min_pixels))
     }
 }
 
@@ -139,6 +102,7 @@ impl Moments {
 mod tests {
     use super::*;
     use wayfix_color_map::ColorId;
+    use wayfix_color_model::ColorMeans;
 
     fn halls() -> Vec<(LampSetting, TrainingVenue)> {
         TrainingHalls::default().gather(ChaCha8Rng::seed_from_u64(44)).unwrap()

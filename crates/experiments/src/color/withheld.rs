@@ -63,7 +63,7 @@ pub(crate) fn withheld_in_halls(
 }
 
 /// Both rates and their paired difference, each a mean with its interval; empty for a colour that is rarely shown.
-fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
+pub(crate) fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
     let mean_of = |what: &str, values: &[f64]| {
         MeanInterval::of(values).map(|mean| {

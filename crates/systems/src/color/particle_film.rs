@@ -52,7 +52,7 @@ impl ParticleSnapshots {
         if localizer.poses().count() > n_kept {
             let particles = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
             let active = localizer.light().active();
-            let light = (active, uv_ellipses(system.map(), localizer.light().member(active)));
+            let light = (active, uv_ellipses(system.map().colors(), localizer.light().member(active)));
             *kept = Some(Moment { stamp: frame.stamp, particles, estimate: *frame.pose.mean(), light });
         }
     }
@@ -108,7 +108,7 @@ impl ParticleSnapshots {
 fn priors(run: &ColorRun) -> Result<Vec<(String, Vec<NamedEllipse>)>> {
     let prior = |(number, light): (usize, &Arc<LightingFilter>)| {
         let light = LightingFilter::new(light.prior().clone(), *light.params())?;
-        Ok((format!("prior of light {number}, V"), uv_ellipses(run.system.map(), &light)))
+        Ok((format!("prior of light {number}, V"), uv_ellipses(run.system.map().colors(), &light)))
     };
     run.system.light().members().iter().enumerate().map(prior).collect()
 }

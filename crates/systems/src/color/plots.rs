@@ -29,7 +29,7 @@ pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
 }
 
 /// The UV part of every colour's density. [Schulz & Fox 2004, Eq. 9, Fig. 5]
-pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> {
+pub fn uv_ellipses(colors: &[String], light: &LightingFilter) -> Vec<NamedEllipse> {
     let ellipse = |(at, name): (usize, &String)| {
         let density = light.color(ColorId(at as u8));
         let c = density.covariance;
@@ -39,7 +39,7 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
             covariance: [[c.m22, c.m23], [c.m32, c.m33]],
         }
     };
-    map.colors().iter().enumerate().map(ellipse).collect()
+    colors.iter().enumerate().map(ellipse).collect()
 }
 
 /// Camera frames beside their classification, spread evenly over the log of `n_images`. [Schulz & Fox 2004, Fig. 4]

@@ -21,6 +21,15 @@ pub fn built_in() -> Result<LightingPriors> {
     serde_json::from_str(BUILT_IN).context("the built-in priors are not usable")
 }
 
+/// The priors of a light and a camera of which nothing is known, by `wayfix-experiments fixtures priors --broad`.
+///
+/// # Errors
+/// None in practice; a test reads the priors.
+pub fn broad() -> Result<LightingPriors> {
+    serde_json::from_str(include_str!("../../data/broad-priors.json"))
+        .context("the broad priors are not usable")
+}
+
 /// Reads priors from a JSON file, as `--write-priors` writes them.
 ///
 /// # Errors

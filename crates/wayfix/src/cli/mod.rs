@@ -6,6 +6,7 @@ mod convert;
 mod help;
 mod info;
 mod input;
+mod learn_priors;
 #[cfg_attr(not(feature = "live"), path = "no_live.rs")]
 mod live;
 mod optimize;
@@ -36,6 +37,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 ///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 ///   wayfix optimize manhattan.g2o.gz              poses that fit the measurements of a pose graph best
+///   wayfix learn-priors --images DIR --labels DIR --out priors.json
+///                                                 colours from labelled images, for run color
 ///   wayfix compare results other-results           figures of two reports side by side
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -54,6 +57,7 @@ enum Command {
     Info(info::Arguments),
     Convert(convert::Arguments),
     Optimize(optimize::Arguments),
+    LearnPriors(learn_priors::Arguments),
     Compare(compare::Arguments),
     Doctor(help::doctor::Arguments),
     Completions(help::completions::Arguments),
@@ -97,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Optimize(arguments) => optimize::main(arguments),
+        Command::LearnPriors(arguments) => learn_priors::main(arguments),
         Command::Compare(arguments) => compare::main(arguments),
         Command::Doctor(arguments) => help::doctor::main(&arguments),
         Command::Completions(arguments) => help::completions::main(arguments),

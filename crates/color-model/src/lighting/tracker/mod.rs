@@ -8,7 +8,7 @@ mod sun_and_shade;
 
 pub use interacting::{Gpb2LightingTracker, ImmLightingTracker};
 pub use jump_markov::JumpMarkovLightingTracker;
-pub(crate) use sun_and_shade::SunAndShade;
+pub use sun_and_shade::SunAndShade;
 
 use nalgebra::{DMatrix, DVector};
 

@@ -7,14 +7,15 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilterParams};
 ///
 /// Its lights are those of the sun, then those of the shade in the same order. Both have the same prior; each learns from its own pixels.
 #[derive(Clone, Debug)]
-pub(crate) struct SunAndShade<T> {
+pub struct SunAndShade<T> {
     pub(crate) sun: T,
     /// `None` if all pixels of an image share a light.
     shade: Option<T>,
 }
 
 impl<T: LightingTracker + Clone> SunAndShade<T> {
-    pub(crate) fn new(light: T, mixes_lights: bool) -> Self {
+    /// Both begin with this light; there is no shade unless an image `mixes_lights`.
+    pub fn new(light: T, mixes_lights: bool) -> Self {
         Self { shade: mixes_lights.then(|| light.clone()), sun: light }
     }
 

@@ -42,6 +42,9 @@ struct Settings {
     /// The same with `--quick`.
     #[serde(default = "ten")]
     n_seeds_quick: u64,
+    /// Names of the labelled images to draw.
+    #[serde(default)]
+    shown: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -72,6 +75,8 @@ enum Experiment {
     FrameTime,
     /// Recorded images of the middle-size league.
     Venues,
+    /// Labelled images of a real field.
+    LabelledImages,
 }
 
 /// Paints half as far from grey as those of the league: chosen before any run, as a halving.
@@ -96,10 +101,6 @@ fn ten() -> u64 {
 /// An experiment with the localizer.
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
-    if let Experiment::Venues = settings.experiment {
-        return crate::venues::run(job.log()?);
-    }
-    let map = Arc::new(color::read_map(&job.options.fixtures.join(&settings.map))?);
     let mut params: ColorSystemParams = match &settings.params {
         Some(file) => toml::from_str(&job.read(file)?)?,
         None => ColorSystemParams::default(),
@@ -107,6 +108,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     if settings.as_published {
         params.set_published();
     }
+    let map = Arc::new(color::read_map(&job.options.fixtures.join(&settings.map))?);
     let learned =
         settings.lights.map_or_else(priors::built_in, |k| TrainingHalls::default().learn_priors(k))?;
     let seed = job.options.seed;
@@ -159,6 +161,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         }
         Experiment::FrameTime => experiments::frame_time(&records(job, None)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
+        Experiment::LabelledImages => crate::labelled::run(job.log()?, &settings.shown, &params),
     }
 }
 

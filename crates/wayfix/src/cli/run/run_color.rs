@@ -1,6 +1,7 @@
 use std::{borrow::Cow, fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
 
 use anyhow::{Context, Result, ensure};
+use wayfix_color_model::LightingPriors;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::terminal::{self, print};
 use wayfix_sensor_log::{LogOpenOptions, Record};
@@ -45,10 +46,10 @@ pub(in crate::cli) struct Arguments {
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
     map: Option<PathBuf>,
-    /// Priors of the colours, one Gaussian per kind of light, as JSON [default: dark and bright light on the colours of the four-legged
-    /// league].
-    #[arg(long, value_name = "FILE")]
-    priors: Option<PathBuf>,
+    /// Priors of the colours, one Gaussian per kind of light: JSON from `wayfix learn-priors`, or `broad` for the colours of the four-legged league under any lamp and
+    /// any camera [default: these colours in simulated halls, dark and bright].
+    #[arg(long, value_name = "FILE|broad")]
+    priors: Option<PriorsArgument>,
     /// Write the built-in priors to a file, and end: the form of one's own.
     #[arg(long, value_name = "FILE")]
     write_priors: Option<PathBuf>,
@@ -69,6 +70,27 @@ Examples:
   wayfix run color --log my.mcap --map my-field.toml --start anywhere --out results
   wayfix run color --print-params > my.toml
   wayfix run color --write-priors priors.json";
+
+#[derive(Clone, Debug)]
+enum PriorsArgument {
+    Broad,
+    File(PathBuf),
+}
+
+impl From<std::ffi::OsString> for PriorsArgument {
+    fn from(text: std::ffi::OsString) -> Self {
+        if text == "broad" { Self::Broad } else { Self::File(text.into()) }
+    }
+}
+
+impl PriorsArgument {
+    fn read(&self) -> Result<LightingPriors> {
+        match self {
+            Self::Broad => priors::broad(),
+            Self::File(path) => priors::read(path),
+        }
+    }
+}
 
 #[derive(Clone, Copy, Debug)]
 struct StartArgument(StartPose);
@@ -111,7 +133,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let map = Arc::new(color::read_map(arguments.map.as_deref().context("give --map")?)?);
-    let priors = arguments.priors.as_deref().map_or_else(priors::built_in, priors::read)?;
+    let priors = arguments.priors.as_ref().map_or_else(priors::built_in, PriorsArgument::read)?;
     ensure!(
         priors.colors() == map.colors(),
         "the map has the colours {:?}, the priors {:?}: they must be the same, in the same order",
