@@ -45,11 +45,9 @@ fn localization(run: &ColorRun) -> Vec<Metric> {
     ];
     metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
     metrics.extend(odometry(run));
-    let is_false = |(frame, pose): &(&super::ColorFrameResult, PoseWithTruth)| {
-        let is_far = pose.position_error() > 0.25 || pose.heading_error().to_degrees() > 6.0; // docs/color.md
-        frame.status == LocalizationStatus::Tracking && is_far
-    };
-    let n_false = run.samples().into_iter().filter(is_false).count();
+    let tracked = run.samples().into_iter().filter(|(frame, _)| frame.status == LocalizationStatus::Tracking);
+    let is_far = |p: PoseWithTruth| p.position_error() > 0.25 || p.heading_error().to_degrees() > 6.0;
+    let n_false = tracked.filter(|(_, pose)| is_far(*pose)).count();
     metrics.push(Metric::new("n_false_tracking_frames", n_false as f64, ""));
     metrics
 }

@@ -12,6 +12,7 @@ use super::ColorSystemParams;
 
 /// Dark and bright priors, learned from 44 simulated venues of the four-legged league by `wayfix-experiments fixtures priors`.
 const BUILT_IN: &str = include_str!("../../data/four-legged-priors.json");
+const BROAD: &str = include_str!("../../data/broad-priors.json");
 
 /// The built-in priors for the colours of the four-legged league.
 ///
@@ -21,13 +22,9 @@ pub fn built_in() -> Result<LightingPriors> {
     serde_json::from_str(BUILT_IN).context("the built-in priors are not usable")
 }
 
-/// The priors of a light and a camera of which nothing is known, by `wayfix-experiments fixtures priors --broad`.
-///
-/// # Errors
-/// None in practice; a test reads the priors.
+/// The priors of a light and a camera of which nothing is known, by `wayfix-experiments fixtures priors --broad`. Errors as of [`built_in`].
 pub fn broad() -> Result<LightingPriors> {
-    serde_json::from_str(include_str!("../../data/broad-priors.json"))
-        .context("the broad priors are not usable")
+    serde_json::from_str(BROAD).context("the broad priors are not usable")
 }
 
 /// Reads priors from a JSON file, as `--write-priors` writes them.
