@@ -307,9 +307,10 @@ where
         let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
         if is_start {
             let best = found.remove(0);
+            // The particles of a known place have seen every frame: they know more than the search.
             if !best.is_known {
                 *present = best.filter;
-            } // else its particles know more than the search: they have seen every frame
+            }
             present.set_max_particles(self.params.max_particles);
             let even = found.into_iter().map(|one| (one.filter, one.log_evidence - best.log_evidence));
             relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;

@@ -46,7 +46,7 @@ fn localization(run: &ColorRun) -> Vec<Metric> {
     metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
     metrics.extend(odometry(run));
     let tracked = run.samples().into_iter().filter(|(frame, _)| frame.status == LocalizationStatus::Tracking);
-    let is_far = |p: PoseWithTruth| p.position_error() > 0.25 || p.heading_error().to_degrees() > 6.0;
+    let is_far = |p: PoseWithTruth| p.position_error() > 0.25 || p.heading_error().to_degrees() > 6.0; // docs/color.md
     let n_false = tracked.filter(|(_, pose)| is_far(*pose)).count();
     metrics.push(Metric::new("n_false_tracking_frames", n_false as f64, ""));
     metrics

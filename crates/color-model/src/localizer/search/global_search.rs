@@ -27,7 +27,7 @@ use crate::{
 
 /// The images are searched at a quarter and at half of their resolution.
 const SHRINK: [u16; 2] = [4, 2];
-/// Rounds of refinement; the first half of them is coarse. Three of four places are dropped after a round, and the others get twice as many moves and frames.
+/// Rounds of refinement; the first half of them is coarse. Three of four places are dropped after a round, and the others get twice as many moves and frames, in the last round all.
 const N_ROUNDS: u32 = 4;
 /// Factors of a step after a success and after a failure: the step stays the same if one in five succeeds. [Rechenberg 1973]
 const STEP_FACTORS: [f64; 2] = [1.5, 0.9036];
@@ -109,7 +109,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         candidates.extend(known.map(|at| self.known(&at)));
         retain_places(&mut candidates, params.n_refined_places);
         for round in 0..N_ROUNDS {
-            let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames: 2 << round };
+            let n_frames = if round + 1 < N_ROUNDS { 2 << round } else { self.evidence.frames.len() };
+            let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames };
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.evidence.fit(scratch, candidate, effort, true);
                 if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
