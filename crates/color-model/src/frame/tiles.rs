@@ -1,4 +1,4 @@
-use super::{PixelSums, PrefixSumImage, sums::COUNT, sums::LANES, unmapped::UnmappedColors};
+use super::{PixelSums, PrefixSumImage, sums::LANES, unmapped::UnmappedColors};
 use nalgebra::Vector3;
 
 use crate::{ColorModelError, YuvImage};
@@ -11,8 +11,7 @@ pub struct TiledImage {
     columns: usize,
     /// Sums of each column of tiles from the first row up to each row.
     down: Vec<[u32; LANES]>,
-    /// Variance of the pixels within a tile: median and mean over the tiles.
-    scatter: [Vector3<f64>; 2],
+    scatter: ScatterRatio,
     /// Unless the background is known.
     unmapped: Option<UnmappedColors>,
 }
@@ -47,6 +46,21 @@ pub struct TileSums {
     n_colors: usize,
     /// Of each tile and colour, and the rows of the tile that the colour covers, a bit each.
     sums: Vec<([u32; LANES], u64)>,
+    /// Which of the sums a run reached, a bit each: a view shows few colours in a tile.
+    reached: Vec<u64>,
+}
+
+/// Positions of the bits, in order.
+fn bits(words: &[u64]) -> impl Iterator<Item = usize> + Clone {
+    let of_word = |(at, word): (usize, &u64)| {
+        let mut left = *word;
+        std::iter::from_fn(move || {
+            let bit = (left != 0).then(|| at * u64::BITS as usize + left.trailing_zeros() as usize);
+            left &= left.wrapping_sub(1);
+            bit
+        })
+    };
+    words.iter().enumerate().flat_map(of_word)
 }
 
 /// Adds what lies between two prefix sums.
@@ -83,8 +97,9 @@ impl TiledImage {
                 down.push(sums);
             }
         }
-        let mut tiled = Self { pixels, side, columns, down, scatter: [Vector3::zeros(); 2], unmapped: None };
-        tiled.scatter = scatters(&tiled.whole_tiles());
+        let mut tiled =
+            Self { pixels, side, columns, down, scatter: ScatterRatio::default(), unmapped: None };
+        tiled.scatter = ScatterRatio::new(scatters(&tiled.whole_tiles()));
         Ok(tiled)
     }
 
@@ -112,11 +127,8 @@ impl TiledImage {
     /// Log-likelihood ratio of the scatter within a region, a pixel: of one surface against any tile of the image. Half of the tiles have the median or less and show one
     /// surface; so no region gains more than a factor of 2.
     pub(crate) fn log_ratio_of_scatter(&self, scatter: &Vector3<f64>) -> f64 {
-        let [surface, edges] = &self.scatter;
-        let ratio =
-            |at: usize| (surface[at] / edges[at]).ln() + scatter[at] * (1.0 / surface[at] - 1.0 / edges[at]);
-        let edges_to_surface = (0.5 * (0..3).map(ratio).sum::<f64>()).exp();
-        -(0.5 + 0.5 * edges_to_surface).ln()
+        let ScatterRatio { at_zero, slope } = &self.scatter;
+        -(0.5 + 0.5 * (at_zero + slope.dot(scatter)).exp()).ln()
     }
 
     /// Number of tiles.
@@ -132,6 +144,23 @@ impl TiledImage {
 
     fn n_rows(&self) -> usize {
         self.pixels.height()
+    }
+}
+
+/// Log-likelihood ratio of the scatter within a region, a pixel, of edges against one surface: linear in the scatter.
+#[derive(Clone, Debug, Default)]
+struct ScatterRatio {
+    at_zero: f64,
+    slope: Vector3<f64>,
+}
+
+impl ScatterRatio {
+    /// The variance of the pixels of a surface, and of a tile with edges.
+    fn new([surface, edges]: [Vector3<f64>; 2]) -> Self {
+        Self {
+            at_zero: 0.5 * surface.zip_map(&edges, |surface, edges| (surface / edges).ln()).sum(),
+            slope: 0.5 * (surface.map(f64::recip) - edges.map(f64::recip)),
+        }
     }
 }
 
@@ -153,8 +182,9 @@ impl TileSums {
     pub fn new(image: &TiledImage, n_colors: usize) -> Self {
         let TiledImage { side, columns, .. } = *image;
         let n_colors = n_colors.max(1);
-        let sums = vec![([0; LANES], 0); image.n_tiles() * n_colors];
-        Self { side, columns, n_colors, sums }
+        let n = image.n_tiles() * n_colors;
+        let reached = vec![0; n.div_ceil(u64::BITS as usize)];
+        Self { side, columns, n_colors, sums: vec![([0; LANES], 0); n], reached }
     }
 
     /// Number of tiles.
@@ -164,7 +194,8 @@ impl TileSums {
 
     /// Removes all pixels.
     pub fn clear(&mut self) {
-        self.sums.fill(([0; LANES], 0));
+        bits(&self.reached).for_each(|at| self.sums[at] = ([0; LANES], 0));
+        self.reached.fill(0);
     }
 
     /// Adds pixels `start..end` of `row` to a colour, each to its tile; what is outside of the image adds nothing. Rows of a tile that are covered from side to side are
@@ -178,9 +209,9 @@ impl TileSums {
         let first = row / self.side * self.columns;
         let covered = 1 << (row % self.side);
         for column in start / self.side..=(end - 1) / self.side {
-            let Some((sums, rows)) = self.sums.get_mut((first + column) * self.n_colors + color) else {
-                return;
-            };
+            let at = (first + column) * self.n_colors + color;
+            let Some((sums, rows)) = self.sums.get_mut(at) else { return };
+            self.reached[at / u64::BITS as usize] |= 1 << (at % u64::BITS as usize);
             let (left, right) = (column * self.side, ((column + 1) * self.side).min(prefix.len() - 1));
             if start <= left && right <= end {
                 *rows |= covered;
@@ -192,7 +223,8 @@ impl TileSums {
 
     /// Adds the rows that runs covered.
     pub fn add_covered_rows(&mut self, image: &TiledImage) {
-        for (at, (sums, rows)) in self.sums.iter_mut().enumerate() {
+        for at in bits(&self.reached) {
+            let (sums, rows) = &mut self.sums[at];
             let tile = at / self.n_colors;
             let top = tile / self.columns * self.side;
             let down = &image.down[tile % self.columns * (image.n_rows() + 1) + top..];
@@ -207,10 +239,10 @@ impl TileSums {
 
     /// The regions that are not empty, tile by tile.
     pub fn regions(&self) -> impl Iterator<Item = TileRegion> + Clone {
-        let region = |(at, (lanes, _)): (usize, &([u32; LANES], u64))| {
-            let sums = PixelSums { lanes: lanes.map(u64::from) };
+        let region = |at: usize| {
+            let sums = PixelSums { lanes: self.sums[at].0.map(u64::from) };
             TileRegion { tile: at / self.n_colors, color: at % self.n_colors, sums }
         };
-        self.sums.iter().enumerate().filter(|(_, (lanes, _))| lanes[COUNT] > 0).map(region)
+        bits(&self.reached).map(region).filter(|region| region.sums.count() > 0)
     }
 }

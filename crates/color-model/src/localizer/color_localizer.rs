@@ -79,6 +79,8 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     n_updates: usize,
     /// Since the last search, s.
     since_search: f64,
+    /// Whether a search after the one that found the present place found no better one.
+    is_confirmed: bool,
     /// Log-likelihood ratios of the last frames to the background at the estimate, nats, and what each frame adds to the one before.
     log_ratios: VecDeque<(f64, f64)>,
 }
@@ -144,6 +146,7 @@ where
             lights: VecDeque::new(),
             n_updates: 0,
             since_search: 0.0,
+            is_confirmed: false,
             log_ratios: VecDeque::new(),
         })
     }
@@ -219,11 +222,15 @@ where
         self.test_alternatives(&mut relocalization, &frame, (share, log_evidence), rng)?;
         let mut buffer = self.buffer.clone();
         buffer.push(newest, self.params.search.n_buffered_frames);
-        let has_searched = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
-        if relocalization.decide(&mut present) {
+        let is_best = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
+        let has_moved = relocalization.decide(&mut present);
+        if has_moved {
             present.set_max_particles(self.params.max_particles);
         }
-        self.since_search = if has_searched { 0.0 } else { self.since_search + self.delta.seconds };
+        self.since_search = if is_best.is_some() { 0.0 } else { self.since_search + self.delta.seconds };
+        let is_replaced =
+            has_moved || (self.n_updates < self.params.search.n_buffered_frames && is_best == Some(false));
+        self.is_confirmed = !is_replaced && (self.is_confirmed || is_best == Some(true));
         (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
         self.remember_frame(light_before, share);
         self.outcome()
@@ -270,22 +277,22 @@ where
         filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
     }
 
-    /// Searches for the robot if it is time to: at the start among the places that the start allows, later anywhere. Returns whether it did.
+    /// Searches for the robot if it is time to: at the start among the places that the start allows, later anywhere. Returns whether it found the present place to be the best.
     fn propose_places<R: Rng + ?Sized>(
         &self,
         buffer: &FrameBuffer,
         present: &mut ColorFilter<SunAndShade<T>>,
         relocalization: &mut RelocalizationTest<ColorFilter<SunAndShade<T>>>,
         rng: &mut R,
-    ) -> Result<bool, ColorModelError> {
+    ) -> Result<Option<bool>, ColorModelError> {
         let params = &self.params.search;
         let (n_frames, is_first) = (self.n_updates + 1, self.n_updates == 0);
-        let is_start = n_frames <= params.n_buffered_frames && n_frames.is_power_of_two();
-        let is_due = n_frames > params.n_buffered_frames
-            && self.since_search + self.delta.seconds >= params.search_interval;
+        let is_start = n_frames <= params.n_buffered_frames;
+        let is_due = n_frames.is_power_of_two()
+            || (!is_start && self.since_search + self.delta.seconds >= params.search_interval);
         let is_on = !self.params.relocalization.is_off();
-        if params.samples_per_place == 0.0 || !(is_start || (is_due && is_on)) {
-            return Ok(false);
+        if params.samples_per_place == 0.0 || !is_due || !(is_start || is_on) {
+            return Ok(None);
         }
         let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
         let frames = buffer.frames();
@@ -305,6 +312,8 @@ where
         let here = if is_first { None } else { Some(here(present.estimate()?)) };
         let mut found = search.run(here, rng)?;
         let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
+        let is_best = known
+            .is_some_and(|(place, _)| found.first().is_some_and(|best| is_same_place(&place, &best.place)));
         if is_start {
             let best = found.remove(0);
             // The particles of a known place have seen every frame: they know more than the search.
@@ -329,7 +338,7 @@ where
                 log_likelihood_ratio: one.log_evidence - log_evidence,
             }))?;
         }
-        Ok(true)
+        Ok(Some(is_best))
     }
 
     /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`: what is not on the map, as another robot,
@@ -358,16 +367,20 @@ where
         let share = estimate.share * (1.0 - alternative_probability);
         let per_tile = 1.0 / weighing.n_tiles as f64;
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
-        let n_frames = self.params.search.n_buffered_frames;
+        let params = &self.params.search;
         // At even odds, the frames tell the map at the estimate, one of all places, from the background.
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
         let mean =
             self.log_ratios.iter().map(|(log, _)| log).sum::<f64>() / self.log_ratios.len().max(1) as f64;
         let n_independent = self.log_ratios.iter().map(|(_, share)| share).sum::<f64>().max(1.0);
         let is_explained = n_independent * mean > odds.ln();
-        let status = match (self.n_updates >= n_frames, is_explained) {
+        let is_confirmed =
+            self.is_confirmed || params.samples_per_place == 0.0 || self.params.relocalization.is_off();
+        let status = match (self.n_updates >= params.n_buffered_frames, is_explained) {
             (true, false) => LocalizationStatus::Lost,
-            (true, true) if share > TRACKING_PROBABILITY && is_narrow => LocalizationStatus::Tracking,
+            (true, true) if share > TRACKING_PROBABILITY && is_narrow && is_confirmed => {
+                LocalizationStatus::Tracking
+            }
             _ => LocalizationStatus::Ambiguous,
         };
         Ok(FrameOutcome {

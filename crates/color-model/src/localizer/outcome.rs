@@ -29,9 +29,9 @@ pub struct FrameOutcome {
 /// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalizationStatus {
-    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place.
+    /// One place has at least 95 % of the probability, the cluster of its particles is narrower than a place, and a search after the one that found it found none better.
     Tracking,
-    /// Several places, or one that is wider.
+    /// Several places, one that is wider, or one that no second search has confirmed.
     Ambiguous,
     /// The last frames together do not tell the map at the estimate from the background with 95 % probability. Do not use the pose.
     Lost,

@@ -49,8 +49,8 @@ pub struct LocalizerParams {
     serde(default, deny_unknown_fields)
 )]
 pub struct GlobalSearchParams {
-    /// Number of frames that are kept for a search. At the start the robot is searched for after 1, 2, 4, … frames up to this number.
-    /// Default 16.
+    /// Number of frames that are kept for a search. The robot is searched for after 1, 2, 4, … frames; up to this number a search replaces
+    /// the place, later it proposes others. Default 16.
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad; 0 never searches. Default 1.
     pub samples_per_place: f64,
@@ -58,7 +58,7 @@ pub struct GlobalSearchParams {
     pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_first_round_moves: u32,
-    /// Time between searches after the start, s. Default 1: a search takes as long as some ten frames.
+    /// Time between searches after the start, s. Default 3: a search takes one to two seconds on two cores, so that a robot with ten images a second keeps up.
     pub search_interval: f64,
 }
 
@@ -69,7 +69,7 @@ impl Default for GlobalSearchParams {
             samples_per_place: 1.0,
             n_refined_places: 800,
             n_first_round_moves: 10,
-            search_interval: 1.0,
+            search_interval: 3.0,
         }
     }
 }
