@@ -5,7 +5,8 @@
     gtsam_fixed_lag.py robot1.txt [MRCLAM_Dataset7/Robot1_Groundtruth.dat]
 
 Prints the cost of the batch, and the error of each path after the best rigid motion: against the batch, and against the truth where it is given
-(`t x y …` lines). iSAM2 shows how far the measurements until a pose becomes older than the lag can lead. In the window and in iSAM2 a pose counts as it is estimated when it becomes older than the lag; both are solved once a second.
+(`t x y …` lines). In the window and in iSAM2 a pose counts as it is estimated when it becomes older than the lag; both are solved once a second.
+iSAM2 shows how far the measurements until then can lead.
 """
 
 import sys
