@@ -6,6 +6,7 @@
 
 Prints the cost of the batch, and the error of each path after the best rigid motion: against the batch, and against the truth where it is given
 (`t x y …` lines). In the window and in iSAM2 a pose counts as it is estimated when it becomes older than the lag; both are solved once a second.
+iSAM2 shows how far the measurements until then can lead.
 """
 
 import sys

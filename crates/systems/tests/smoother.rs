@@ -98,7 +98,7 @@ fn ranges_place_beacons_and_say_what_is_assumed() {
     assert!(
         said("receiver_calibration_estimated")
             && said("noise_estimated")
-            && said("driving_direction_unknown")
+            && said("odometry_scale_and_direction_unknown")
     );
     assert!(ranges::plots(&run).unwrap().len() >= 2);
 }

@@ -9,7 +9,8 @@ use super::{
 };
 use crate::SlamSmootherError;
 
-/// Ranges with outliers: 95 % of the efficiency of least squares when there are none.
+/// Ranges with outliers: 95 % of the efficiency of least squares when there are none. [Holland and Welsch 1977]
+/// Its cost is that of Student's t with $`c^2 - 1`$ degrees of freedom, so that the noise has a likelihood. [Lange et al. 1989]
 pub(super) const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 
 /// Relative decrease of the cost that ends an optimization for the likelihood: some thousand measurements cost about as much each as one.

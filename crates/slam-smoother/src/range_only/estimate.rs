@@ -20,18 +20,13 @@ pub struct RangeOnlyParams {
     pub start_noise: RangeOnlyNoise,
     /// Bias and scale of the receiver beforehand.
     pub calibration: CalibrationPrior,
-    /// Standard deviation of the angle between heading and direction of driving, rad.
-    ///
-    /// Ranges to beacons of unknown place do not tell it: another angle turns path and beacons about the start. It only widens covariances.
-    /// Default 0.05: a sensor of heading that is mounted by hand.
-    pub driving_direction_sigma: f64,
 }
 
 impl Default for RangeOnlyParams {
     fn default() -> Self {
         let start_noise =
             RangeOnlyNoise { translation_per_sqrt_meter: 0.04, heading_per_sqrt_meter: 0.01, range: 1.0 };
-        Self { start_noise, calibration: CalibrationPrior::default(), driving_direction_sigma: 0.05 }
+        Self { start_noise, calibration: CalibrationPrior::default() }
     }
 }
 
@@ -57,10 +52,15 @@ pub struct RangeOnlyEstimate {
     pub beacons: BTreeMap<u32, (Vector2<f64>, Matrix2<f64>)>,
     /// Beacons without a place.
     pub unplaced: Vec<UnplacedBeacon>,
-    /// Bias and scale of the receiver.
+    /// Bias and scale of the receiver, against odometry.
     pub calibration: Calibration,
     /// Standard deviations of bias and logarithm of the scale.
     pub calibration_sigma: Calibration,
+    /// Standard deviation of what odometry may be wrong by throughout, along and across, as a share of the distance.
+    ///
+    /// No range tells it: odometry that is too long by a factor, or drives askew by an angle, scales or turns path and beacons about the start.
+    /// The covariances hold it.
+    pub odometry_error_sigma: f64,
     /// Noise by the likelihood of the measurements.
     pub noise: RangeOnlyNoise,
     /// Standard deviation of the residuals of the ranges by their median, m.
@@ -88,11 +88,6 @@ pub fn estimate(
     params: &RangeOnlyParams,
 ) -> Result<RangeOnlyEstimate, SlamSmootherError> {
     input.check()?;
-    let sigma = params.driving_direction_sigma;
-    if !(sigma >= 0.0 && sigma.is_finite()) {
-        let (what, index, wanted) = ("parameter driving_direction_sigma", 0, "finite and not negative");
-        return Err(SlamSmootherError::OutOfRange { what, index, value: sigma, wanted });
-    }
     let mut noise = params.start_noise;
     let mut solution =
         Solution { poses: vec![input.start], beacons: BTreeMap::new(), calibration: Vector2::zeros() };
@@ -121,7 +116,7 @@ pub fn estimate(
     noise::maximize_likelihood(&mut graph)?;
     let unplaced = unplaced(input, &graph.solution()?, graph.calibration_covariance()?, graph.noise());
     let mut estimate = finish(&mut graph, unplaced)?;
-    add_driving_direction(&mut estimate, params.driving_direction_sigma);
+    add_odometry_error(&mut estimate);
     Ok(estimate)
 }
 
@@ -133,15 +128,16 @@ fn finish(
     let n = solution.poses.len();
     let period = n.div_ceil(MAX_COVARIANCES).max(1);
     let chosen: Vec<usize> = (0..n).step_by(period).collect();
-    let of_calibration = graph.calibration_covariance()?;
+    let (calibration, of_calibration) = (graph.calibration()?, graph.calibration_covariance()?);
     let residuals = graph.range_residuals()?;
     let range_sigma = sigma_of(residuals.clone());
     Ok(RangeOnlyEstimate {
         pose_covariances: graph.pose_covariances(&chosen)?,
         beacons: graph.placed_beacons()?,
         unplaced,
-        calibration: graph.calibration()?,
+        calibration,
         calibration_sigma: of_calibration.diagonal().map(f64::sqrt).into(),
+        odometry_error_sigma: ((calibration.log_scale.powi(2) + of_calibration.m22) / 2.0).sqrt(),
         noise: *graph.noise(),
         range_sigma,
         n_outliers: residuals.iter().filter(|residual| **residual > 3.0 * range_sigma).count(),
@@ -150,17 +146,20 @@ fn finish(
     })
 }
 
-/// Adds what an unknown direction of driving does: path and beacons turn about the start, headings stay.
-fn add_driving_direction(estimate: &mut RangeOnlyEstimate, sigma: f64) {
-    let start = estimate.poses[0].translation;
-    let moved = |place: Vector2<f64>| Vector2::new(start.y - place.y, place.x - start.x) * sigma;
+/// Adds what an unknown scale and direction of odometry do: path and beacons scale and turn about the start, headings stay.
+///
+/// The ranges say by how much receiver and odometry differ in scale, $`λ`$, not which of them is wrong. When both err alike, each has a mean square
+/// of $`λ^2 / 2`$; odometry counts as wrong by as much across as along. Both together are the same in all directions.
+fn add_odometry_error(estimate: &mut RangeOnlyEstimate) {
+    let (start, sigma) = (estimate.poses[0].translation, estimate.odometry_error_sigma);
+    let variance = |place: &Vector2<f64>| (sigma * (place - start).norm()).powi(2);
     for (number, covariance) in &mut estimate.pose_covariances {
-        let pose = estimate.poses[*number];
-        let in_body = (pose.rotation_matrix().transpose() * moved(pose.translation)).push(0.0);
-        *covariance += in_body * in_body.transpose();
+        let variance = variance(&estimate.poses[*number].translation);
+        covariance.m11 += variance;
+        covariance.m22 += variance;
     }
     for (place, covariance) in estimate.beacons.values_mut() {
-        *covariance += moved(*place) * moved(*place).transpose();
+        *covariance += Matrix2::identity() * variance(place);
     }
 }
 

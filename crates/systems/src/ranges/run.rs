@@ -6,7 +6,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
 use wayfix_slam_smoother::range_only::{
-    self, Calibration, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
+    self, Calibration, CalibrationPrior, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
 };
 use wayfix_table_log::RangeRecording;
 
@@ -61,7 +61,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
         step,
     };
     let stamped_estimates: Vec<_> = estimate.pose_covariances.iter().map(stamped).collect();
-    say_assumptions(&estimate, &params, &mut events);
+    say_assumptions(&estimate, &params.calibration, &mut events);
     let span = stamps.first().copied().zip(stamps.last().copied());
     warn_of_no_overlap(&mut events, &path, span);
     let true_beacons = truth.iter().filter_map(|record| match record.data {
@@ -72,8 +72,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     Ok(RangeRun { estimate, stamped_estimates, truth: path, true_beacons, events })
 }
 
-fn say_assumptions(estimate: &RangeOnlyEstimate, params: &RangeOnlyParams, events: &mut EventCounts) {
-    let RangeOnlyParams { calibration: prior, driving_direction_sigma: driving_direction, .. } = params;
+fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, events: &mut EventCounts) {
     let RangeOnlyNoise { translation_per_sqrt_meter, heading_per_sqrt_meter, .. } = estimate.noise;
     let range = estimate.range_sigma;
     let Calibration { bias, log_scale } = estimate.calibration;
@@ -92,8 +91,11 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, params: &RangeOnlyParams, event
         ),
     );
     events.warn(
-        "driving_direction_unknown",
-        format!("heading and direction of driving differ by an unknown angle (σ {driving_direction} rad): covariances hold a turn about the start"),
+        "odometry_scale_and_direction_unknown",
+        format!(
+            "no range tells the scale of odometry, nor the angle between heading and direction of driving: covariances hold {:.1} % of the distance from the start, by the scale of the receiver",
+            100.0 * estimate.odometry_error_sigma
+        ),
     );
     events.add("range_outlier", estimate.n_outliers as u64);
     events.add("observation_accepted", estimate.n_ranges as u64);

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Pose graphs in this project, in GTSAM and in other programs, one after the other in one run.
+
+    cargo bench -p wayfix-smoother --bench pose_graphs --no-run        # prints the PATH
+    pose_graphs.py FOLDER PATH [NAME='COMMAND']…
+
+FOLDER has files `.g2o` or `.g2o.gz`. In a COMMAND, `{}` is the file; it prints `own=COST` and `ms=TIME` (computing time without reading the file).
+Prints a table: cost without ½, computing time in ms of start and optimization (median of three runs), and peak memory of the process in MB.
+GTSAM: Levenberg–Marquardt from the file's poses, or from dead reckoning along the edges i → i + 1 where there are none.
+All run with one thread.
+"""
+
+import argparse
+import gzip
+import os
+import re
+import shlex
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+N_RUNS = 3
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "TBB_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
+
+
+def gtsam_alone(path):
+    """Prints cost and computing time."""
+    import gtsam
+
+    text = Path(path).read_text()
+    is_spatial = "EDGE_SE3" in text
+    graph, start = gtsam.readG2o(path, is_spatial)
+    pose = gtsam.Pose3 if is_spatial else gtsam.Pose2
+    if "VERTEX" not in text:
+        steps = {}
+        for index in range(graph.size()):
+            i, j = graph.at(index).keys()
+            if j == i + 1:
+                steps[i] = graph.at(index).measured()
+        start, at, i = gtsam.Values(), pose(), min(steps)
+        start.insert(i, at)
+        while i in steps:
+            at, i = at.compose(steps[i]), i + 1
+            start.insert(i, at)
+    first = min(start.keys())
+    held = gtsam.noiseModel.Isotropic.Sigma(6 if is_spatial else 3, 1e-6)
+    prior = gtsam.PriorFactorPose3 if is_spatial else gtsam.PriorFactorPose2
+    anchored = gtsam.NonlinearFactorGraph(graph)
+    anchored.add(prior(first, start.atPose3(first) if is_spatial else start.atPose2(first), held))
+    params = gtsam.LevenbergMarquardtParams()
+    params.setRelativeErrorTol(1e-8)
+    began = time.process_time()
+    found = gtsam.LevenbergMarquardtOptimizer(anchored, start, params).optimize()
+    print(f"own={2 * graph.error(found):.9e} ms={1e3 * (time.process_time() - began):.1f}")
+
+
+def run(command):
+    """Cost, time and memory of a program; `None` for one that fails."""
+    with tempfile.TemporaryFile("w+") as out:
+        process = subprocess.Popen(command, stdout=out, stderr=subprocess.DEVNULL, env={**os.environ, **ONE_THREAD})
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = status
+        out.seek(0)
+        text = out.read()
+    if status != 0:
+        return None
+    cost, ms = (re.search(pattern, text) for pattern in (r"(?:own=| cost )(\S+)", r"(?:\bms=|median )([\d.]+)"))
+    if cost is None or ms is None:
+        return None
+    return float(cost[1]), float(ms[1]), usage.ru_maxrss / 1024
+
+
+def cell(results):
+    if None in results:
+        return "fails"
+    cost, _, megabytes = results[0]
+    return f"{cost:.7g} / {statistics.median(ms for _, ms, _ in results):.0f} ms / {megabytes:.0f} MB"
+
+
+def main():
+    if sys.argv[1] == "--gtsam-alone":
+        return gtsam_alone(sys.argv[2])
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("bench")
+    parser.add_argument("programs", nargs="*")
+    args = parser.parse_args()
+    programs = {"wayfix": [args.bench, "{}"], "GTSAM": [sys.executable, __file__, "--gtsam-alone", "{}"]}
+    for program in args.programs:
+        name, command = program.split("=", 1)
+        programs[name] = shlex.split(command)
+    print("| set |", " | ".join(programs), "|\n|", " --- |" * (len(programs) + 1), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for path in sorted(args.folder.glob("*.g2o*")):
+            name = path.name.split(".")[0]
+            plain = Path(folder) / f"{name}.g2o"
+            plain.write_bytes(gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes())
+            commands = [[word.replace("{}", str(plain)) for word in command] for command in programs.values()]
+            cells = [cell([run(command) for _ in range(N_RUNS)]) for command in commands]
+            print(f"| {name} |", " | ".join(cells), "|", flush=True)
+            plain.unlink()
+
+
+if __name__ == "__main__":
+    main()
