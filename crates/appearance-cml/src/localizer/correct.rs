@@ -13,9 +13,11 @@ where
     /// Corrects the belief by another estimator of the pose, or of a part of it, whose errors are independent of odometry and views. [Gross et al. 2005, Fig. 2]
     ///
     /// Each component $`i`$ is fused with the measurement by split covariance intersection, which for an independent measurement is the Kalman update
-    /// [Julier & Uhlmann 2001]. With [`GaussianFusionRule::WeightedIntersection`] the measurement is a mixture that is fused as a view is
-    /// [Gross et al. 2005, Eqs. 2-8]: one hypothesis for each component, which takes what is not measured from it. Otherwise its weight is multiplied by its evidence $`N(z ⊟ h(μ_i); 0, S_i)`$. The uniform component has the evidence $`1/V`$, with the
+    /// [Julier & Uhlmann 2001]. Its weight is multiplied by its evidence $`N(z ⊟ h(μ_i); 0, S_i)`$. The uniform component has the evidence $`1/V`$, with the
     /// extent $`V`$ of what is measured (`volume`): m² of the map for positions, $`2π`$ for headings.
+    ///
+    /// With [`GaussianFusionRule::WeightedIntersection`], as published, the measurement is a mixture that [`fuse`](crate::fuse) takes as it takes a view: one
+    /// hypothesis for each component, which has what is not measured from that component.
     ///
     /// ```
     /// use nalgebra::{Matrix2, Vector2, Vector3};
