@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use wayfix_appearance_cml::PanoramaDescriptorParams;
+use wayfix_appearance_cml::{LocalizerParams, PanoramaDescriptorParams};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogOpenOptions, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, open};
 use wayfix_slam_ekf::ExternalParams;
@@ -27,8 +27,12 @@ fn drive() -> Vec<Record> {
 }
 
 fn localized(records: Vec<Record>) -> CmlRun {
+    localized_by(records, LocalizerParams::default())
+}
+
+fn localized_by(records: Vec<Record>, localizer: LocalizerParams) -> CmlRun {
     let external = ExternalParams { frames: vec!["map".to_owned()], ..ExternalParams::default() };
-    let mut params = CmlParams { external, ..CmlParams::default() };
+    let mut params = CmlParams { external, localizer, ..CmlParams::default() };
     let plan = CmlRunPlan::of_log(records, 0, &mut params, &CameraViewGeometry::default()).expect("a plan");
     let start = cml::first_true_pose(&plan.records).expect("truth");
     let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
@@ -94,6 +98,26 @@ fn positions_headings_and_poses_correct_the_belief() {
     let [accepted, withheld] =
         ["measurement_accepted", "measurement_withheld"].map(|event| run.system.events().get(event));
     assert!(accepted > 0 && accepted + withheld + 1 >= n, "{accepted} + {withheld} of {n}");
+}
+
+#[test]
+fn as_published_measurements_are_intersected() {
+    let records = drive();
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let mut error = || Normal::new(0.0, SIGMA).expect("a sigma").sample(&mut rng);
+    let (all, n) = with(&records, |stamp, pose| {
+        let position = pose.translation + Vector2::new(error(), error());
+        measured(stamp, "map", MeasuredQuantity::Position(position), Some(SIGMA))
+    });
+    let [published, default] =
+        [LocalizerParams::as_published(), LocalizerParams::default()].map(|p| localized_by(all.clone(), p));
+    let without = localized_by(records, LocalizerParams::as_published());
+    let [error, default_error, error_without] = [&published, &default, &without].map(mean_error);
+    let accepted = { published }.system.events().get("measurement_accepted");
+    println!(
+        "{accepted} of {n}: {error:.3} m, by default {default_error:.3} m, without {error_without:.3} m"
+    );
+    assert!(accepted + 1 >= n && error < error_without && error != default_error);
 }
 
 #[test]

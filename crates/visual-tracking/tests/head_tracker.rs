@@ -7,8 +7,8 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BoundingBox, HeadDetector, HeadTracker, HeadTrackerParams, PixelMask, RelativeHeadSizeSource, RgbImage,
-    TrackStatus, Tracker, TrackingError,
+    BoundingBox, HeadDetector, HeadTracker, HeadTrackerParams, RelativeHeadSizeSource, RgbImage, TrackStatus,
+    Tracker, TrackingError,
 };
 
 const WIDTH: usize = 160;
@@ -126,23 +126,6 @@ fn a_head_that_leaves_is_lost_and_found_again() {
     let found = tracker.track(&picture(back, 0.35, 1.0, 1.0), &mut rng()).unwrap();
     assert_eq!(found.status, TrackStatus::Tracked);
     assert!(found.bounding_box.iou(&head(back, 1.0)) > 0.5, "{:?}", found.bounding_box);
-}
-
-#[test]
-fn a_mask_starts_it_as_a_box_does() {
-    let shown = picture([50.0, 60.0], 0.35, 1.0, 1.0);
-    let inside = |u: usize, v: usize| {
-        ((u as f64 + 0.5 - 50.0) / SEMI_AXES[0]).hypot((v as f64 + 0.5 - 60.0) / SEMI_AXES[1]) <= 1.0
-    };
-    let mask = PixelMask::from_fn(WIDTH, HEIGHT, inside).unwrap();
-    let mut tracker = HeadTracker::from_mask(&shown, &mask, HeadTrackerParams::default()).unwrap();
-    let center = [54.0, 61.0];
-    let target = tracker.track(&picture(center, 0.35, 1.0, 1.0), &mut rng()).unwrap();
-    assert!(target.bounding_box.iou(&head(center, 1.0)) > 0.7);
-    assert_eq!(target.outline.len(), 48);
-    let nobody = PixelMask::empty(WIDTH, HEIGHT).unwrap();
-    let refused = HeadTracker::from_mask(&shown, &nobody, HeadTrackerParams::default());
-    assert!(matches!(refused, Err(TrackingError::Empty { .. })));
 }
 
 #[test]

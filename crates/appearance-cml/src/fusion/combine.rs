@@ -72,7 +72,7 @@ fn weighted_intersection(
 }
 
 /// The Gaussian at `step` from `at`, its covariance turned from the one body frame to the other.
-fn carried(
+pub(crate) fn carried(
     at: &Pose2<f64>,
     step: &Vector3<f64>,
     covariance: &Matrix3<f64>,

@@ -7,6 +7,7 @@ mod params;
 mod source;
 mod split;
 
+pub(crate) use combine::carried;
 pub use combine::combine;
 pub use fuse::fuse;
 pub use likelihood::{GaussianMixtureLikelihood, UniformComponent};

@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, SensorModel, Update
 use wayfix_gaussian_core::{ChiSquaredGate, GaussianMixture};
 use wayfix_kalman::{ExtendedKalmanAlgorithm, KalmanAlgorithm};
 
-use super::{AppearanceLocalizer, LocalizerEvent, belief::Belief};
-use crate::{AppearanceMapError, ReferenceSearch, ViewDescriptor};
+use super::{AppearanceLocalizer, LocalizerEvent, belief::Belief, measured_poses::MeasuredPoses};
+use crate::{AppearanceMapError, GaussianFusionRule, ReferenceSearch, ViewDescriptor};
 
 impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M>
 where
@@ -15,6 +15,9 @@ where
     /// Each component $`i`$ is fused with the measurement by split covariance intersection, which for an independent measurement is the Kalman update
     /// [Julier & Uhlmann 2001]. Its weight is multiplied by its evidence $`N(z ⊟ h(μ_i); 0, S_i)`$. The uniform component has the evidence $`1/V`$, with the
     /// extent $`V`$ of what is measured (`volume`): m² of the map for positions, $`2π`$ for headings.
+    ///
+    /// With [`GaussianFusionRule::WeightedIntersection`], as published, the measurement is a mixture that [`fuse`](crate::fuse) takes as it takes a view: one
+    /// hypothesis for each component, which has what is not measured from that component.
     ///
     /// ```
     /// use nalgebra::{Matrix2, Vector2, Vector3};
@@ -64,6 +67,12 @@ where
         }
         if !gate.accepts(least_nis) {
             return Err(AppearanceMapError::Outlier { nis: least_nis, threshold: gate.threshold() });
+        }
+        if self.params.fusion.fusion_rule == GaussianFusionRule::WeightedIntersection {
+            let posteriors = corrected.iter().map(|(_, posterior)| posterior);
+            let measured = MeasuredPoses::new(state, posteriors)?;
+            let belief = self.belief.fused(None, &[&measured], self.map.area(), &self.params)?;
+            return self.replace_belief(belief, self.kidnap.clone(), false);
         }
         corrected.sort_by(|a, b| b.0.total_cmp(&a.0)); // the heaviest first
         let largest = corrected.first().map_or(0.0, |(log_weight, _)| *log_weight);

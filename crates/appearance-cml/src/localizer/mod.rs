@@ -6,6 +6,7 @@ mod belief;
 mod correct;
 mod learn;
 mod match_view;
+mod measured_poses;
 mod outcome;
 mod params;
 mod pose_history;

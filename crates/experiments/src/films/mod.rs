@@ -1,13 +1,15 @@
-//! Trackers on simulated films, whose truth is a mask.
+//! Trackers on simulated films, whose truth is a mask, and on a recording from other starts.
 
 mod active;
 mod follow;
 mod learned;
 mod score;
+mod starts;
 mod table;
 
 pub(crate) use active::active;
 pub(crate) use follow::follow;
 pub(crate) use learned::learned;
 pub use score::FilmTrackingScore;
+pub(crate) use starts::starts;
 pub use table::table;

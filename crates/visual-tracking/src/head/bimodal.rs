@@ -60,11 +60,6 @@ impl BimodalHistogram {
         self.known.iter().map(shared).sum::<f64>() / n_pixels.max(1) as f64
     }
 
-    /// Share of each colour in its mode.
-    pub(super) fn shares(&self) -> &[f64] {
-        &self.shares
-    }
-
     /// $`M_k = (1 − a) M_{k−1} + a C_k`$ [Andrade-Cetto 2005, Eq. 29], for each mode that is in sight.
     pub(super) fn adapt(&mut self, candidate: &[f64], rate: f64) {
         let masses = self.masses(candidate);

@@ -1,4 +1,3 @@
-use super::bimodal::BimodalHistogram;
 use super::edge::{GradientField, Rim};
 use super::likelihood::{CueRatios, N_LEVELS, RatioSums, levels};
 use super::search::{Candidate, Cues, Search};
@@ -72,8 +71,13 @@ impl HeadDetector {
             (0..N_LEVELS).for_each(|k| (rim[k], elsewhere[k]) = (rim[k] + on[k], elsewhere[k] + off[k]));
             (width, height) = (width + bounds.width(), height + bounds.height());
         }
-        let model = BimodalHistogram::new(&quantizer, &head, false)?;
-        let ratios = CueRatios::of_counts((model.shares(), head.iter().sum()), &around, rim, elsewhere);
+        let n_pixels = head.iter().sum::<f64>();
+        if n_pixels <= 0.0 {
+            return Err(TrackingError::Empty { what: "pixels of the head" });
+        }
+        // One part: no more than the colours of all heads is learned.
+        let shares = vec![head.iter().map(|count| count / n_pixels).collect()];
+        let ratios = CueRatios::of_counts((shares, &[n_pixels]), &[around], rim, elsewhere);
         Ok(Self { quantizer, ratios, aspect: height / width })
     }
 

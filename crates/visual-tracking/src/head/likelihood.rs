@@ -1,58 +1,80 @@
-use super::bimodal::BimodalHistogram;
+use std::f64::consts::SQRT_2;
+
 use super::edge::{GradientField, N_POINTS, Rim};
-use super::surroundings::ring;
 use crate::{ColorBinImage, RowSpans, TrackingError};
 
 /// Levels of the gradient, one for each octave of $`1 + |n · g|`$; the largest, of two bytes, is in the last.
 pub(super) const N_LEVELS: usize = 9;
 
-/// Log-likelihood ratios of the head against its surroundings, for each colour and for each level of the gradient across the rim.
+/// Parts of a head from top to bottom: hair, eyes and nose, mouth and chin. A head that turns keeps the height of its parts, and has other
+/// surroundings above, beside and below it.
+const N_PARTS: usize = 3;
+
+/// Log-likelihood ratios of the head against its surroundings, for each colour in each part and for each level of the gradient across the rim.
 ///
-/// A cue that does not tell the head from its surroundings has ratios near 0, so no weights are needed. One pixel, or one point of a rim, is
-/// added to every share, so what was never seen says nothing.
+/// A cue that does not tell the head from its surroundings has ratios near 0, so no weights are needed. One pixel of the smaller sample, or one
+/// point of a rim, is added to every share, so what was never seen says nothing.
 #[derive(Clone, Debug)]
 pub(super) struct CueRatios {
-    colors: Vec<f64>,
+    /// Share of each colour in each part of the head.
+    shares: Vec<Vec<f64>>,
+    /// Ratio of each colour in each part.
+    colors: Vec<Vec<f64>>,
     /// Share of the head's rim in each level.
     rim: [f64; N_LEVELS],
     levels: [f64; N_LEVELS],
 }
 
 impl CueRatios {
-    /// Measured in a picture in which the head is known; the rim's shares adapt at `rate` from those of `before`.
+    /// Measured in a picture in which the head is known; the head's shares adapt at `rate` from those of `before`.
     pub(super) fn measured(
-        model: &BimodalHistogram,
         (bins, field): (&ColorBinImage, &GradientField),
         (center, semi_axes): ([i64; 2], [f64; 2]),
         before: Option<(&Self, f64)>,
     ) -> Result<Self, TrackingError> {
-        let (inside, around) = ring(bins, center, semi_axes)?;
+        let ellipse = RowSpans::ellipse(semi_axes)?;
+        let mut head = counts_of_parts(bins, &ellipse, center, &ellipse);
+        let both = RowSpans::ellipse(semi_axes.map(|axis| SQRT_2 * axis))?;
+        let mut around = counts_of_parts(bins, &both, center, &ellipse);
+        for (around, inside) in around.iter_mut().flatten().zip(head.iter().flatten()) {
+            *around -= inside;
+        }
+        let n_pixels: Vec<f64> = head.iter().map(|part| part.iter().sum()).collect();
+        for (part, n) in head.iter_mut().zip(&n_pixels) {
+            part.iter_mut().for_each(|count| *count /= n.max(1.0));
+        }
         let outline = Rim::ellipse(semi_axes);
         let mut rim = levels(field, &outline, &[center]);
         let total = rim.iter().sum::<f64>();
         rim = rim.map(|count| count / total);
         if let Some((before, rate)) = before {
             (0..N_LEVELS).for_each(|k| rim[k] = before.rim[k] + rate * (rim[k] - before.rim[k]));
+            for (share, before) in head.iter_mut().flatten().zip(before.shares.iter().flatten()) {
+                *share = before + rate * (*share - before);
+            }
         }
         let elsewhere = levels(field, &outline, &outline.some_points(center));
-        Ok(Self::of_counts((model.shares(), inside.total()), &around, rim, elsewhere))
+        Ok(Self::of_counts((head, &n_pixels), &around, rim, elsewhere))
     }
 
-    /// From the shares of the colours of `n_pixels` pixels of heads, the counts of those around, and the levels of rims, heads' and others.
+    /// From the shares of the colours of `n_pixels` pixels in each part of heads, the counts of those around, and the levels of rims, heads' and others.
     pub(super) fn of_counts(
-        (shares, n_pixels): (&[f64], f64),
-        around: &[f64],
+        (shares, n_pixels): (Vec<Vec<f64>>, &[f64]),
+        around: &[Vec<f64>],
         rim: [f64; N_LEVELS],
         elsewhere: [f64; N_LEVELS],
     ) -> Self {
         let log_ratio = |head: f64, other: f64, one: f64| libm::log((head + one) / (other + one));
-        let (pixel, point) = (1.0 / n_pixels.max(1.0), 1.0 / N_POINTS as f64);
-        let total = around.iter().sum::<f64>().max(1.0);
-        let color = |(share, count): (&f64, &f64)| log_ratio(*share, count / total, pixel);
-        let colors = shares.iter().zip(around).map(color).collect();
+        let part = |((shares, n), around): ((&Vec<f64>, &f64), &Vec<f64>)| -> Vec<f64> {
+            let total = around.iter().sum::<f64>().max(1.0);
+            let pixel = 1.0 / n.min(total).max(1.0);
+            shares.iter().zip(around).map(|(share, count)| log_ratio(*share, count / total, pixel)).collect()
+        };
+        let colors = shares.iter().zip(n_pixels).zip(around).map(part).collect();
+        let point = 1.0 / N_POINTS as f64;
         let [n_rim, n_elsewhere] = [&rim, &elsewhere].map(|counts| counts.iter().sum::<f64>());
         let levels = std::array::from_fn(|k| log_ratio(rim[k] / n_rim, elsewhere[k] / n_elsewhere, point));
-        Self { colors, rim, levels }
+        Self { shares, colors, rim, levels }
     }
 
     /// The sum of the ratios along a rim.
@@ -61,37 +83,64 @@ impl CueRatios {
     }
 }
 
-/// Sums of the ratios of the colours along each row of a picture, up to each pixel.
+/// The colours under a shape in each part of the ellipse with the same centre; rows above and below the ellipse count to the first and last part.
+fn counts_of_parts(
+    bins: &ColorBinImage,
+    shape: &RowSpans,
+    center: [i64; 2],
+    ellipse: &RowSpans,
+) -> Vec<Vec<f64>> {
+    let mut counts = vec![vec![0.0; bins.n_bins()]; N_PARTS];
+    for (v, pixels) in (-center[1]..).zip(bins.rows()) {
+        let Some(columns) = shape.columns(v) else { continue };
+        let part = &mut counts[part_of(v, ellipse, N_PARTS)];
+        let at = |u: i64| (u + center[0]).clamp(0, pixels.len() as i64) as usize;
+        pixels[at(columns.start)..at(columns.end)].iter().for_each(|&bin| part[usize::from(bin)] += 1.0);
+    }
+    counts
+}
+
+/// The part of an ellipse in `n_parts` of equal height that a row belongs to.
+fn part_of(row: i64, ellipse: &RowSpans, n_parts: usize) -> usize {
+    let rows = ellipse.rows();
+    ((row - rows.start) * n_parts as i64 / (rows.end - rows.start)).clamp(0, n_parts as i64 - 1) as usize
+}
+
+/// Sums of the ratios of the colours in each part along each row of a picture, up to each pixel.
 pub(super) struct RatioSums {
     width: usize,
-    sums: Vec<f64>,
+    sums: Vec<Vec<f64>>,
 }
 
 impl RatioSums {
     pub(super) fn new(ratios: &CueRatios, bins: &ColorBinImage) -> Self {
         let width = bins.width() + 1;
-        let mut sums = Vec::with_capacity(width * bins.height());
-        for row in bins.rows() {
-            let mut sum = 0.0;
-            sums.push(sum);
-            for &bin in row {
-                sum += ratios.colors[usize::from(bin)];
+        let along_rows = |colors: &Vec<f64>| {
+            let mut sums = Vec::with_capacity(width * bins.height());
+            for row in bins.rows() {
+                let mut sum = 0.0;
                 sums.push(sum);
+                for &bin in row {
+                    sum += colors[usize::from(bin)];
+                    sums.push(sum);
+                }
             }
-        }
-        Self { width, sums }
+            sums
+        };
+        Self { width, sums: ratios.colors.iter().map(along_rows).collect() }
     }
 
-    /// The sum of the ratios of the colours inside a shape; beyond the picture there is none.
-    pub(super) fn inside(&self, spans: &RowSpans, center: [i64; 2]) -> f64 {
+    /// The sum of the ratios of the colours inside an ellipse; beyond the picture there is none.
+    pub(super) fn inside(&self, ellipse: &RowSpans, center: [i64; 2]) -> f64 {
         let last = self.width as i64 - 1;
         let row = |v: i64| {
-            let columns = spans.columns(v)?;
+            let columns = ellipse.columns(v)?;
             let row = usize::try_from(v + center[1]).ok()?;
-            let up_to = |u: i64| self.sums.get(row * self.width + (u + center[0]).clamp(0, last) as usize);
+            let sums = &self.sums[part_of(v, ellipse, self.sums.len())];
+            let up_to = |u: i64| sums.get(row * self.width + (u + center[0]).clamp(0, last) as usize);
             Some(up_to(columns.end)? - up_to(columns.start)?)
         };
-        spans.rows().filter_map(row).sum()
+        ellipse.rows().filter_map(row).sum()
     }
 }
 
@@ -110,7 +159,7 @@ fn level(strength: f32) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ColorQuantizer, ColorSpace, RgbImage, SlidingHistogram};
+    use crate::{ColorQuantizer, ColorSpace, RgbImage};
     use approx::abs_diff_eq;
 
     const SIZE: (usize, usize) = (60, 50);
@@ -128,10 +177,7 @@ mod tests {
     fn measured(picture: &RgbImage) -> (CueRatios, ColorBinImage, GradientField) {
         let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [32, 32, 8]).unwrap();
         let (bins, field) = (ColorBinImage::new(&quantizer, picture).unwrap(), GradientField::new(picture));
-        let spans = RowSpans::ellipse([12.0; 2]).unwrap();
-        let head = SlidingHistogram::new(&bins, spans, [30, 25]).into_histogram();
-        let model = BimodalHistogram::new(&quantizer, head.counts(), false).unwrap();
-        let ratios = CueRatios::measured(&model, (&bins, &field), ([30, 25], [12.0; 2]), None).unwrap();
+        let ratios = CueRatios::measured((&bins, &field), ([30, 25], [12.0; 2]), None).unwrap();
         (ratios, bins, field)
     }
 
@@ -146,7 +192,7 @@ mod tests {
             for (i, &bin) in bins.bins().iter().enumerate() {
                 let (u, v) = ((i % SIZE.0) as i64 - center[0], (i / SIZE.0) as i64 - center[1]);
                 if spans.columns(v).is_some_and(|columns| columns.contains(&u)) {
-                    plain += ratios.colors[usize::from(bin)];
+                    plain += ratios.colors[part_of(v, &spans, N_PARTS)][usize::from(bin)];
                 }
             }
             assert!(abs_diff_eq!(sums.inside(&spans, center), plain, epsilon = 1e-9), "{center:?}");

@@ -23,7 +23,8 @@ pub struct HeadTrackerParams {
     pub gradient_weight: Option<f64>,
     /// Rate $`a`$ at which the colours adapt. [Andrade-Cetto 2005, Eq. 29] Default 0.1.
     pub color_adaptation_rate: f64,
-    /// Intersection above which they do. Default 0.6.
+    /// Intersection above which a lost head is found and, with a fixed gradient weight, the colours adapt; otherwise they adapt where an ellipse is
+    /// likelier the head than its surroundings. Default 0.6.
     pub adapt_above_intersection: f64,
     /// Intersection below which there is no evidence of the head. Default 0.3.
     pub no_evidence_below_intersection: f64,

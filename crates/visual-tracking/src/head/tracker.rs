@@ -10,8 +10,8 @@ use super::search::{Candidate, Cues, Search, n_inside};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
 use crate::{
-    BoundingBox, ColorBinImage, ColorHistogram, ColorQuantizer, ColorSpace, PixelMask, RowSpans,
-    SlidingHistogram, TargetEstimate, TrackStatus, Tracker,
+    BoundingBox, ColorBinImage, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram, TargetEstimate,
+    TrackStatus, Tracker,
 };
 use crate::{RgbImage, TrackingError};
 
@@ -30,8 +30,10 @@ const N_OUTLINE: usize = 48;
 /// ```
 ///
 /// with the colour distributions $`M`$ of the head and $`R`$ of the ring of equal area around it, and the distributions $`H`$ and $`S`$ of the
-/// gradient across its rim and across displaced rims. All are measured in the last picture; the highest sum wins. $`M`$ and $`H`$ adapt
-/// [Andrade-Cetto 2005, Eq. 29] where the histogram intersection [Andrade-Cetto 2005, Eq. 28] is high. The size comes from a [`RelativeHeadSizeSource`] or from the search.
+/// gradient across its rim and across displaced rims. $`M`$ and $`R`$ are those of the upper, middle or lower third of the head that holds $`p`$: without
+/// the place of its colours a histogram does not tell the size. All are measured in the last picture; the highest sum wins. $`M`$ and $`H`$
+/// adapt [Andrade-Cetto 2005, Eq. 29] where that sum is positive. The histogram intersection [Andrade-Cetto 2005, Eq. 28] tells a lost head. The size
+/// comes from a [`RelativeHeadSizeSource`] or from the search.
 ///
 /// With a fixed [`gradient_weight`](HeadTrackerParams::gradient_weight), intersection and mean gradient are scaled to their ranges and added, as
 /// published. Skin and hair are then two modes of variable proportion.
@@ -90,31 +92,6 @@ impl HeadTracker {
         params: HeadTrackerParams,
     ) -> Result<Self, TrackingError> {
         let head = head.clipped((picture.width() as usize, picture.height() as usize))?;
-        Self::started(picture, head, params, |bins, spans, center| {
-            Ok(SlidingHistogram::new(bins, spans, center).into_histogram())
-        })
-    }
-
-    /// Starts from the pixels of the head in the first picture.
-    ///
-    /// # Errors
-    /// Returns the errors of [`new`](Self::new), [`TrackingError::Empty`] for an empty mask, or [`TrackingError::Dimension`] if mask and image differ
-    /// in size.
-    pub fn from_mask(
-        picture: &RgbImage,
-        mask: &PixelMask,
-        params: HeadTrackerParams,
-    ) -> Result<Self, TrackingError> {
-        let rect = mask.bounding_rect().ok_or(TrackingError::Empty { what: "pixels of the head" })?;
-        Self::started(picture, rect.to_box()?, params, |bins, _, _| ColorHistogram::of_mask(bins, mask))
-    }
-
-    fn started(
-        picture: &RgbImage,
-        head: BoundingBox,
-        params: HeadTrackerParams,
-        histogram: impl FnOnce(&ColorBinImage, RowSpans, [i64; 2]) -> Result<ColorHistogram, TrackingError>,
-    ) -> Result<Self, TrackingError> {
         params.validate()?;
         let base = [head.width() / 2.0, head.height() / 2.0];
         for semi_axis in base {
@@ -123,7 +100,7 @@ impl HeadTracker {
         let quantizer = ColorQuantizer::new(ColorSpace::Opponent, params.color_bins)?;
         let bins = ColorBinImage::new(&quantizer, picture)?;
         let center = head.center().map(|c| c.floor() as i64);
-        let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
+        let histogram = SlidingHistogram::new(&bins, RowSpans::ellipse(base)?, center).into_histogram();
         let (model, ratios) = match params.gradient_weight {
             Some(_) => {
                 let own = own_colors(&bins, &histogram, center, base)?;
@@ -133,7 +110,7 @@ impl HeadTracker {
                 // The ratios leave out the colours of the surroundings, and a colour's share tells its weight.
                 let model = BimodalHistogram::new(&quantizer, histogram.counts(), false)?;
                 let field = GradientField::new(picture);
-                let ratios = CueRatios::measured(&model, (&bins, &field), (center, base), None)?;
+                let ratios = CueRatios::measured((&bins, &field), (center, base), None)?;
                 (model, Some(ratios))
             }
         };
@@ -228,13 +205,15 @@ impl<S: RelativeHeadSizeSource> HeadTracker<S> {
             n_without_evidence: 0,
             is_lost: false,
         };
-        if color >= self.params.adapt_above_intersection {
-            self.model.adapt(histogram.counts(), self.params.color_adaptation_rate);
-        }
+        let is_head = match self.ratios {
+            Some(_) => candidate.log_ratio() > 0.0,
+            None => color >= self.params.adapt_above_intersection,
+        };
+        let rate = if is_head { self.params.color_adaptation_rate } else { 0.0 };
+        self.model.adapt(histogram.counts(), rate);
         if let Some(before) = &self.ratios {
-            let (place, rate) = ((candidate.center, candidate.semi_axes), self.params.color_adaptation_rate);
-            let ratios = CueRatios::measured(&self.model, (bins, field), place, Some((before, rate)))?;
-            self.ratios = Some(ratios);
+            let place = (candidate.center, candidate.semi_axes);
+            self.ratios = Some(CueRatios::measured((bins, field), place, Some((before, rate)))?);
         }
         Ok(color)
     }

@@ -46,6 +46,9 @@ struct Settings {
     pan_tilt_rate_deg_s: Option<f64>,
     /// Numbers of the frames, from and up to, that teach a head, which is then detected in the first frames instead of given.
     detect_from: Option<[usize; 2]>,
+    /// Whether the recording is run from other starts too, see [`films::starts`].
+    #[serde(default)]
+    other_starts: bool,
     /// True boxes: of a recording relative to the folder given by `--data`, of a stored log beside the plan.
     truth: Option<PathBuf>,
 }
@@ -106,6 +109,9 @@ fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let method = *settings.methods.first().context("give `methods`")?;
     let rate_hz = (!is_stored).then_some(options.frame_rate_hz);
     let params = settings.params();
+    if settings.other_starts {
+        return films::starts(&mut log, &truth, method, &params);
+    }
     let learn = |[first, end]: [usize; 2]| -> Result<HeadDetector> {
         let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
         Ok(track::learn_head(&mut log, &truth, rate_hz, first..end, &params.head, job.log()?)?)
