@@ -51,6 +51,11 @@ impl<T> Decimated<T> {
         &self.kept
     }
 
+    /// Number of values offered.
+    pub fn n_seen(&self) -> usize {
+        self.n_seen
+    }
+
     /// Stride between kept values.
     pub fn stride(&self) -> usize {
         self.stride
