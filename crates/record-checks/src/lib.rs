@@ -14,6 +14,7 @@ mod held_velocity;
 mod odometry_delay;
 mod odometry_lag;
 mod overlap;
+mod overview;
 mod plausible_increment;
 
 pub use events::{EventCounts, RefusedRecord};
@@ -22,4 +23,5 @@ pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIME
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::TurnHistory;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
+pub use overview::{LogOverview, OVERVIEW_HEAD};
 pub use plausible_increment::IncrementPlausibilityCheck;

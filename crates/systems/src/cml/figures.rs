@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use super::{CmlRun, CmlTask, CmlViewResult};
-use crate::system::{System, note_of_sample};
+use crate::system::System;
 use wayfix_evaluation::{
     errors::PoseWithTruth,
     report::{Metric, ReportRun},
@@ -28,7 +28,7 @@ pub fn summarize(run: &mut CmlRun) -> ReportRun {
     ];
     let mut notes = vec![task(run.task).to_owned()];
     notes.extend(run.notes.iter().cloned());
-    notes.extend(note_of_sample(sample));
+    notes.extend(sample.note());
     ReportRun { metrics, timings, events: run.system.events().counts(), notes, ..ReportRun::default() }
 }
 

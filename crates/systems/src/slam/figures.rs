@@ -10,7 +10,6 @@ use wayfix_slam_ekf::{
 };
 
 use super::{FrontEnd, SlamRun, StampedEstimate};
-use crate::system::note_of_sample;
 
 /// Events that count a refused observation or record.
 const REJECTIONS: [&str; 5] = [
@@ -36,7 +35,7 @@ where
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let timings = timings(run.system.stamped_estimates(), run.system.estimator.longest_step);
     let mut summary = ReportRun { metrics, timings, events: run.events().counts(), ..ReportRun::default() };
-    summary.notes.extend(note_of_sample(&run.system.estimator.stamped_estimates));
+    summary.notes.extend(run.system.estimator.stamped_estimates.note());
     unobservable_directions(run.system.observability(), &mut summary);
     if let Some(batch) = reference {
         compare_with_batch(&batch, &mut summary);

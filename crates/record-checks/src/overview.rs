@@ -1,4 +1,7 @@
-use std::{collections::BTreeSet, mem::discriminant};
+use std::{
+    collections::{BTreeSet, HashSet},
+    mem::discriminant,
+};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
@@ -8,7 +11,8 @@ use wayfix_sensor_log::{
 /// Records that an overview keeps whole, from the beginning of the log.
 pub const OVERVIEW_HEAD: usize = 1 << 15;
 
-/// What must be known of a log before it is processed: its beginning, all truth, the first detection of each landmark, and the last record of each kind.
+/// What must be known of a log before it is processed: its beginning, all truth, the first detection of each landmark, and the first and last record of
+/// each kind.
 /// Scans have no ranges, and images no pixels.
 ///
 /// Memory grows with the log by its truth only.
@@ -40,23 +44,24 @@ impl LogOverview {
         Ok(thinned)
     }
 
-    fn read_with_head(mut log: Log, n_whole_images: usize, head: usize) -> Self {
+    /// The overview of a log whose first `head` records are kept whole.
+    pub fn read_with_head(mut log: Log, n_images: usize, head: usize) -> Self {
         let mut overview = Self::default();
         let mut seen: BTreeSet<u32> = BTreeSet::new();
-        let mut has_moved = None;
+        let (mut has_moved, mut kinds) = (None, HashSet::new());
         // The last record of each kind that is not kept.
         let mut last: Vec<(usize, Record)> = Vec::new();
         for Record { stamp, data } in log.by_ref() {
-            let is_new = has_truth(&data) || has_new_landmark(&data, &mut seen);
+            let kind = discriminant(&data);
+            let is_new = kinds.insert(kind) | has_new_landmark(&data, &mut seen) || has_truth(&data);
             overview.n_images += usize::from(matches!(data, RecordData::Image(_)));
-            let data = if overview.n_images > n_whole_images { without_pixels(data) } else { data };
+            let data = if overview.n_images > n_images { without_pixels(data) } else { data };
             let record = Record { stamp, data: without_ranges(data) };
             has_moved = has_moved.max(moves(&record.data));
             // The scatter of the truth of a robot that has not moved yet is its noise.
             if is_new || has_moved == Some(false) || overview.n_records < head {
                 overview.records.push(record);
             } else {
-                let kind = discriminant(&record.data);
                 last.retain(|(_, other)| discriminant(&other.data) != kind);
                 last.push((overview.records.len(), record));
             }
