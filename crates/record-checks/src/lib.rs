@@ -5,7 +5,7 @@
 //! | Do odometry and measurements overlap in time? | [`check_overlap`] |
 //! | Can a robot move like that? | [`IncrementPlausibilityCheck`], [`check_velocity`] |
 //! | What moved a robot with a held velocity command? | [`HeldVelocity`] |
-//! | Is the odometry late? | [`warn_of_lag`], [`without_odometry_delay`] |
+//! | Is the odometry late? | [`TurnHistory`], [`without_odometry_delay`] |
 //! | Is the compass mirrored? | [`HeadingSignTest`] |
 
 mod events;
@@ -14,12 +14,14 @@ mod held_velocity;
 mod odometry_delay;
 mod odometry_lag;
 mod overlap;
+mod overview;
 mod plausible_increment;
 
 pub use events::{EventCounts, RefusedRecord};
 pub use heading_sign::HeadingSignTest;
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
 pub use odometry_delay::without_odometry_delay;
-pub use odometry_lag::warn_of_lag;
+pub use odometry_lag::TurnHistory;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
+pub use overview::{LogOverview, OVERVIEW_HEAD};
 pub use plausible_increment::IncrementPlausibilityCheck;

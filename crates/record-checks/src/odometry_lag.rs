@@ -10,22 +10,36 @@ const MOST_PERIODS: f64 = 50.0;
 /// χ² threshold with one degree of freedom at probability 1e-6, for twice the gain in log likelihood.
 const LIKELIHOOD_RATIO_THRESHOLD: f64 = 23.9;
 
-/// Warns if odometry is stamped late relative to scans or images, and names the parameter that corrects it; `delay` is its current value.
-///
-/// `odometry` is the dead-reckoned pose at each scan or image; `seen_turns` is the turn since the previous one, estimated from
-/// scans or images alone, rad.
-pub fn warn_of_lag(
-    events: &mut EventCounts,
-    odometry: &[(Stamp, Pose2<f64>)],
-    seen_turns: &[Option<f64>],
-    delay: f64,
-) {
-    if let Some(lag) = odometry_lag(odometry, seen_turns) {
-        let delay = delay + lag;
-        events.warn(
-            "odometry_lags",
-            format!("odometry comes about {lag:.2} s later than what the sensor shows: their turns agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
-        );
+/// Number of scans or images of which the turns are compared.
+const MOST_TURNS: usize = 1 << 16;
+
+/// Turns of the robot by odometry and as its sensor sees them, of the first 65,536 scans or images.
+#[derive(Clone, Debug, Default)]
+pub struct TurnHistory {
+    /// The dead-reckoned pose at each scan or image.
+    odometry: Vec<(Stamp, Pose2<f64>)>,
+    /// The turn since the previous one, rad.
+    seen: Vec<Option<f64>>,
+}
+
+impl TurnHistory {
+    /// Adds a scan or image: the dead-reckoned pose there, and the turn since the previous one, estimated from the two alone, rad.
+    pub fn push(&mut self, stamp: Stamp, dead_reckoning: Pose2<f64>, seen_turn: Option<f64>) {
+        if self.seen.len() < MOST_TURNS {
+            self.odometry.push((stamp, dead_reckoning));
+            self.seen.push(seen_turn);
+        }
+    }
+
+    /// Warns if odometry is stamped late relative to scans or images, and names the parameter that corrects it; `delay` is its current value.
+    pub fn warn_of_lag(&self, events: &mut EventCounts, delay: f64) {
+        if let Some(lag) = odometry_lag(&self.odometry, &self.seen) {
+            let delay = delay + lag;
+            events.warn(
+                "odometry_lags",
+                format!("odometry comes about {lag:.2} s later than what the sensor shows: their turns agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
+            );
+        }
     }
 }
 

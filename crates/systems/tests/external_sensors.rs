@@ -227,7 +227,7 @@ fn waiting_measurements_are_saved_and_resumed() {
     for half in halves {
         let bytes = half.to_bytes().expect("a state");
         let half = SavedPointMap::from_bytes(&bytes).expect("the same state");
-        let resumed = points::run_on(half, &records, &params, |_| {}).expect("a usable log");
+        let resumed = points::run_on(half, &records, &records, &params, |_| {}).expect("a usable log");
         assert_eq!(resumed.system.save(), whole.system.save());
     }
 }

@@ -46,9 +46,22 @@ impl<T> Decimated<T> {
         Ok(())
     }
 
+    /// Says that figures and pictures are of some values only, if not all are kept.
+    pub fn note(&self) -> Option<String> {
+        let Self { stride, n_seen, .. } = self;
+        (*stride > 1).then(|| {
+            format!("The log is long: figures and pictures are of one in {stride} of {n_seen} estimates.")
+        })
+    }
+
     /// The kept values, in order.
     pub fn kept(&self) -> &[T] {
         &self.kept
+    }
+
+    /// Number of values offered.
+    pub fn n_seen(&self) -> usize {
+        self.n_seen
     }
 
     /// Stride between kept values.
@@ -72,5 +85,7 @@ mod tests {
             assert!((kept.len() + 1) * stride > value, "the newest are there: {kept:?} of {value}");
         }
         assert!(decimated.kept().len() >= 5);
+        assert!(decimated.note().unwrap().contains("one in 128 of 1000"), "{:?}", decimated.note());
+        assert_eq!(Decimated::<u8>::new(10).note(), None);
     }
 }

@@ -24,8 +24,9 @@ impl system::EstimateDrawer for CmlDrawingState {
     type System = CmlSystem;
 
     fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
-        let Some(frame) = system.frames().get(self.n_written) else { return Ok(()) };
-        self.n_written += 1;
+        let n_views = system.sample().n_seen();
+        let Some(frame) = system.latest().filter(|_| self.n_written < n_views) else { return Ok(()) };
+        self.n_written = n_views;
         let (stamp, world) = (frame.stamp, topics::WORLD_FRAME);
         if let Some(pose) = frame.pose.as_ref().map(|pose| *pose.mean()) {
             self.path.push(stamp, &pose, writer)?;

@@ -1,3 +1,5 @@
+use std::time::Duration;
+
 use super::{CmlRun, CmlTask, CmlViewResult};
 use crate::system::System;
 use wayfix_evaluation::{
@@ -10,17 +12,23 @@ pub fn summarize(run: &mut CmlRun) -> ReportRun {
     let mut metrics = errors(run);
     let frames = run.system.frames();
     let n = frames.len() as f64;
+    let sample = run.system.sample();
     let certain = frames.iter().filter(|frame| frame.is_certain).count() as f64;
     metrics.push(Metric::new("n_references", run.system.localizer().map().len() as f64, ""));
-    metrics.push(Metric::new("n_localized_views", n, ""));
+    metrics.push(Metric::new("n_localized_views", sample.n_seen() as f64, ""));
     metrics.push(Metric::new("unimodal_share", certain / n.max(1.0), ""));
-    let micros = |frame: &CmlViewResult| 1e6 * frame.step.as_secs_f64();
+    let micros = |step: Duration| 1e6 * step.as_secs_f64();
     let timings = vec![
-        Metric::new("step_mean_us", frames.iter().map(micros).sum::<f64>() / n.max(1.0), "µs"),
-        Metric::new("step_max_us", frames.iter().map(micros).fold(0.0, f64::max), "µs"),
+        Metric::new(
+            "step_mean_us",
+            frames.iter().map(|frame| micros(frame.step)).sum::<f64>() / n.max(1.0),
+            "µs",
+        ),
+        Metric::new("step_max_us", micros(run.system.longest_step()), "µs"),
     ];
     let mut notes = vec![task(run.task).to_owned()];
     notes.extend(run.notes.iter().cloned());
+    notes.extend(sample.note());
     ReportRun { metrics, timings, events: run.system.events().counts(), notes, ..ReportRun::default() }
 }
 

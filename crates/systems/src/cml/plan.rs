@@ -36,8 +36,8 @@ pub struct CameraViewGeometry {
 /// σ of an unknown heading, rad.
 const ANY_HEADING: f64 = 3.0;
 
-/// Number of frames compared to find the turning sense of the columns.
-const N_EVIDENCE: usize = 400;
+/// Number of frames compared to find the turning sense of the columns: the first ones.
+pub const N_EVIDENCE: usize = 400;
 
 impl CmlRunPlan {
     /// Builds a plan from folders of frames. Every `withhold`-th frame is localized and the others are learned. With `learn_from`, its frames are

@@ -1,3 +1,5 @@
+use std::borrow::Borrow;
+
 use anyhow::{Result, bail};
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -55,8 +57,28 @@ pub struct CmlRun {
 /// # Errors
 /// Returns an error if there is no usable image.
 pub fn run(
+    system: CmlSystem,
+    plan: &CmlRunPlan,
+    task: CmlTask,
+    start: CmlStartPose,
+    params: &CmlParams,
+    seed: u64,
+    observe: impl FnMut(RunStep<'_, CmlSystem>),
+) -> Result<CmlRun> {
+    let records = without_odometry_delay(&plan.records, params.odometry_delay);
+    run_streamed(system, plan, records.iter(), task, start, params, seed, observe)
+}
+
+/// As [`run`], with the records one by one: a long log need not be kept. The records of the plan are then the
+/// [overview](crate::system::LogOverview) of the log; a delay of odometry was taken out of `records` already.
+///
+/// # Errors
+/// Returns the errors of [`run`].
+#[expect(clippy::too_many_arguments, reason = "those of `run`, and the records twice")]
+pub fn run_streamed<R: Borrow<Record>>(
     mut system: CmlSystem,
     plan: &CmlRunPlan,
+    records: impl IntoIterator<Item = R>,
     task: CmlTask,
     start: CmlStartPose,
     params: &CmlParams,
@@ -71,8 +93,7 @@ pub fn run(
         system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
-    let records = without_odometry_delay(&plan.records, params.odometry_delay);
-    drive(&mut system, records.iter(), observe);
+    drive(&mut system, records, observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");

@@ -6,12 +6,14 @@ use wayfix_appearance_cml::{
     StartPosePrior, ViewDescriptor,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
 use crate::system::{
-    EventCounts, HeldVelocity, IncrementPlausibilityCheck, Stopwatch, System, check_velocity, warn_of_lag,
+    EventCounts, HeldVelocity, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
+    check_velocity,
 };
 
 /// The localizer of panoramas with an index, which avoids comparing with every reference.
@@ -27,14 +29,14 @@ pub struct CmlSystem {
     velocity_timeout: f64,
     plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
-    /// Dead-reckoned pose at each view, from the first record on.
-    dead_reckoning: Vec<(Stamp, Pose2<f64>)>,
     /// Dead-reckoned motion since the first record.
     moved: Pose2<f64>,
     last_view: Option<PanoramaDescriptor>,
-    /// Turn since the view before, estimated from the views alone, rad.
-    seen_turns: Vec<Option<f64>>,
-    frames: Vec<CmlViewResult>,
+    /// Turns between the views, by odometry and by the views alone.
+    turns: TurnHistory,
+    frames: Decimated<CmlViewResult>,
+    latest: Option<CmlViewResult>,
+    longest_step: Duration,
     pub(super) external: ExternalSensors,
     pub(super) events: EventCounts,
 }
@@ -73,19 +75,34 @@ impl CmlSystem {
             velocity_timeout: params.velocity_timeout,
             plausible: IncrementPlausibilityCheck::default(),
             odometry: None,
-            dead_reckoning: Vec::new(),
             moved: Pose2::identity(),
             last_view: None,
-            seen_turns: Vec::new(),
-            frames: Vec::new(),
+            turns: TurnHistory::default(),
+            frames: Decimated::new(MOST_ESTIMATES),
+            latest: None,
+            longest_step: Duration::ZERO,
             external: ExternalSensors::new(params.external.clone()),
             events: EventCounts::default(),
         })
     }
 
-    /// Results of all views so far.
+    /// Results of the views so far, evenly spaced: all of a short log, at most [`MOST_ESTIMATES`] of a long one.
     pub fn frames(&self) -> &[CmlViewResult] {
+        self.frames.kept()
+    }
+
+    pub(super) fn sample(&self) -> &Decimated<CmlViewResult> {
         &self.frames
+    }
+
+    /// Result of the last view.
+    pub fn latest(&self) -> Option<&CmlViewResult> {
+        self.latest.as_ref()
+    }
+
+    /// Longest computing time of a view.
+    pub(super) fn longest_step(&self) -> Duration {
+        self.longest_step
     }
 
     /// The localizer.
@@ -100,7 +117,7 @@ impl CmlSystem {
 
     /// Warns if the turns of the views show that odometry lags; `delay` is the delay already corrected, s.
     pub(super) fn warn_of_lag(&mut self, delay: f64) {
-        warn_of_lag(&mut self.events, &self.dead_reckoning, &self.seen_turns, delay);
+        self.turns.warn_of_lag(&mut self.events, delay);
     }
 
     /// Adds a reference view with a known pose; counts and skips an unusable view.
@@ -159,14 +176,15 @@ impl CmlSystem {
         let panorama_took = Stopwatch::start();
         let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
         let describing = panorama_took.elapsed();
-        self.dead_reckoning.push((stamp, self.moved));
-        self.seen_turns.push(self.last_view.replace(view.clone()).map(|last| view.compare(&last).rotation));
+        let seen_turn = self.last_view.replace(view.clone()).map(|last| view.compare(&last).rotation);
+        self.turns.push(stamp, self.moved, seen_turn);
         let nearest = self.nearest(&view);
         let stopwatch = Stopwatch::start();
         let outcome = self.localizer.update(view).map_err(|error| error.to_string())?;
         let step = describing + stopwatch.elapsed();
         outcome.events.iter().for_each(|event| self.count(event));
-        self.frames.push(CmlViewResult {
+        self.longest_step = self.longest_step.max(step);
+        let result = CmlViewResult {
             stamp,
             pose: self.localizer.estimate().cloned(),
             is_certain: outcome.estimate.is_some(),
@@ -175,7 +193,9 @@ impl CmlSystem {
             n_detections: outcome.n_detections,
             n_references: self.localizer.map().len(),
             step,
-        });
+        };
+        self.frames.push(result.clone());
+        self.latest = Some(result);
         Ok(())
     }
 

@@ -2,6 +2,7 @@ use std::{collections::BTreeMap, time::Duration};
 
 use nalgebra::{Matrix3, Matrix4};
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
     RangeBearing, SlamError, UpdateReport,
@@ -14,7 +15,7 @@ use wayfix_slam_smoother::{
 use super::{MountingParams, PointSensor, PointSlamParams};
 use crate::{
     slam::{SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried},
-    system::Stopwatch,
+    system::{MOST_ESTIMATES, Stopwatch},
 };
 
 /// Poses older than this are final, s.
@@ -34,13 +35,13 @@ pub(super) struct PointFollower {
     covariance: Matrix3<f64>,
     has_anchors: bool,
     waiting: BTreeMap<usize, Vec<Waiting>>,
-    estimates: Vec<StampedEstimate>,
+    estimates: Decimated<StampedEstimate>,
     failure: Option<String>,
 }
 
 /// An estimate of the filter that waits for the pose of the smoother before it.
 struct Waiting {
-    place: usize,
+    estimate: StampedEstimate,
     motion: Pose2<f64>,
     covariance: Matrix3<f64>,
 }
@@ -75,7 +76,7 @@ impl PointFollower {
             covariance: Matrix3::zeros(),
             has_anchors: false,
             waiting: BTreeMap::new(),
-            estimates: Vec::new(),
+            estimates: Decimated::new(MOST_ESTIMATES),
             failure: None,
         })))
     }
@@ -85,14 +86,20 @@ impl PointFollower {
         if self.failure.is_none()
             && let Err(error) = act(self)
         {
-            self.failure = Some(error.to_string());
+            self.fail(error.to_string());
         }
+    }
+
+    /// Ends the smoother; what waits for it is of no use.
+    fn fail(&mut self, reason: String) {
+        self.failure = Some(reason);
+        self.waiting.clear();
     }
 
     /// Adds a pose to the smoother where the filter is.
     fn advance(&mut self, filter: &EkfSlam<PointSensor>) -> Result<(), SlamSmootherError> {
         if self.is_batch && self.smoother.newest() >= MAX_BATCH_POSES {
-            self.failure = Some(format!("the log has more than {MAX_BATCH_POSES} scans"));
+            self.fail(format!("the log has more than {MAX_BATCH_POSES} scans"));
             return Ok(());
         }
         let guess = self.is_batch.then(|| filter.robot().pose);
@@ -139,10 +146,11 @@ impl PointFollower {
     /// Puts settled poses into the estimates that wait for them.
     fn settle(&mut self, settled: &[SettledPose]) {
         for SettledPose { number, pose, covariance } in settled {
-            for waiting in self.waiting.remove(number).unwrap_or_default() {
-                let estimate = &mut self.estimates[waiting.place];
-                estimate.pose = pose.compose(&waiting.motion);
-                estimate.covariance = carried(covariance, &waiting.motion) + waiting.covariance;
+            for Waiting { estimate, motion, covariance: added } in
+                self.waiting.remove(number).unwrap_or_default()
+            {
+                let covariance = carried(covariance, &motion) + added;
+                self.estimates.push(StampedEstimate { pose: pose.compose(&motion), covariance, ..estimate });
             }
         }
     }
@@ -188,20 +196,19 @@ impl SlamFollower<PointSensor> for PointFollower {
         let motion = filter.robot().pose.inverse().compose(&estimate.pose);
         let of_filter = filter.robot_covariance().fixed_view::<3, 3>(0, 0).into_owned();
         let covariance = estimate.covariance - carried(&of_filter, &motion);
-        let place = self.estimates.len();
-        self.estimates.push(*estimate);
-        let waiting = Waiting { place, motion, covariance };
-        self.waiting.entry(self.smoother.newest()).or_default().push(waiting);
+        let mut settled = Vec::new();
         self.try_to(|follower| {
-            let settled = follower.smoother.step(estimate.stamp.seconds())?;
-            follower.settle(&settled);
+            settled = follower.smoother.step(estimate.stamp.seconds())?;
             Ok(())
         });
-        if self.is_batch {
-            return Duration::ZERO; // a batch is no part of a step
+        // A batch is no part of a step.
+        let step = if self.is_batch { Duration::ZERO } else { stopwatch.elapsed() };
+        if self.failure.is_none() {
+            let estimate = StampedEstimate { step: estimate.step + step, ..*estimate };
+            let waiting = Waiting { estimate, motion, covariance };
+            self.waiting.entry(self.smoother.newest()).or_default().push(waiting);
+            self.settle(&settled);
         }
-        let step = stopwatch.elapsed();
-        self.estimates[place].step += step;
         step
     }
 
@@ -215,7 +222,7 @@ impl SlamFollower<PointSensor> for PointFollower {
         match &self.failure {
             Some(failure) => Err(failure.clone()),
             None => Ok(SmoothedRun {
-                estimates: std::mem::take(&mut self.estimates),
+                estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
                 landmarks: self.smoother.landmarks(),
                 is_batch: self.is_batch,
                 graph,

@@ -15,5 +15,5 @@ pub use figures::summarize;
 pub use front_end::{PointSensor, PointSlamFrontEnd, PointSystem};
 pub use params::{MountingParams, PointSlamParams, RobotProfile, RobotTimingParams};
 pub use plots::plots;
-pub use run::{PointRun, run, run_on};
+pub use run::{PointRun, run, run_on, run_streamed};
 pub use state::{OdometryRecordKind, PointFrontEndState, SavedPointMap};

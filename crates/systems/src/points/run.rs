@@ -1,4 +1,7 @@
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    borrow::Borrow,
+    collections::{BTreeMap, BTreeSet},
+};
 
 use anyhow::{Result, bail};
 use nalgebra::Vector2;
@@ -10,7 +13,7 @@ use wayfix_slam_ekf::{LandmarkEstimate, LandmarkId};
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::{
     slam::{AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose, warn_of_start},
-    system::{EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap},
+    system::{EventCounts, ODOMETRY, OVERVIEW_HEAD, RunStep, System, TrueStartPose, check_overlap},
 };
 
 /// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
@@ -28,22 +31,35 @@ pub fn run(
     params: &PointSlamParams,
     observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
-    let Some(start_stamp) = start_stamp(records) else {
+    run_streamed(records, records, params, observe)
+}
+
+/// As [`run`], with the records one by one: a long log need not be kept. `overview` is the [overview](crate::system::LogOverview) of the same log, or all of it.
+///
+/// # Errors
+/// Returns the errors of [`run`].
+pub fn run_streamed<R: Borrow<Record>>(
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
+    params: &PointSlamParams,
+    observe: impl FnMut(RunStep<'_, PointSystem>),
+) -> Result<PointRun> {
+    let Some(start_stamp) = start_stamp(overview) else {
         bail!(
             "the log has no odometry: EKF-SLAM needs velocities or increments (`wayfix info` shows what a log holds)"
         );
     };
-    let association = association(records, params.association)?;
-    check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, RecordData::Detections(_))))?;
-    let truth = ReferencePath::from_records(records);
-    let true_positions = TruePositions::from_records(records);
+    let association = association(overview, params.association)?;
+    check_overlap(overview, ODOMETRY, ("detections", |data| matches!(data, RecordData::Detections(_))))?;
+    let truth = ReferencePath::from_records(overview);
+    let true_positions = TruePositions::from_records(overview);
     let from =
         |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
-    let known = TrueStartPose::at(start_stamp, &truth, records).filter(|_| params.start_pose.is_none());
+    let known = TrueStartPose::at(start_stamp, &truth, overview).filter(|_| params.start_pose.is_none());
     let start = if params.start_pose.is_none() && known.is_none() {
         let mut pilot = from(Pose2::new(0.0, 0.0, 0.0))?;
         pilot.estimator.follower = None;
-        fitted_start(pilot, records, &true_positions)
+        fitted_start(pilot, overview, &true_positions)
     } else {
         start_pose(params.start_pose, known)
     };
@@ -55,43 +71,46 @@ pub fn run(
     if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &truth);
     }
-    for (id, landmark) in anchors(records, association, &start, params.n_anchors) {
+    for (id, landmark) in anchors(overview, association, &start, params.n_anchors) {
         system.add_anchor(id, landmark)?;
     }
-    let seen = (association == AssociationRule::Known).then(|| identities(records));
+    let seen = (association == AssociationRule::Known).then(|| identities(overview));
     system.add_given_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
-    drive_through(system, truth, records, observe)
+    drive_through(system, truth, overview, records, observe)
 }
 
-/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`.
+/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `overview` and `records` are as in
+/// [`run_streamed`].
 ///
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
 ///
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later detection can be used, or a parameter is out of range.
-pub fn run_on(
+pub fn run_on<R: Borrow<Record>>(
     saved: SavedPointMap,
-    records: &[Record],
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
     params: &PointSlamParams,
     observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let association = saved.association;
     let system = PointSystem::resume(params.clone(), saved)?;
-    self::association(records, Some(association))?;
-    drive_through(system, ReferencePath::from_records(records), records, observe)
+    self::association(overview, Some(association))?;
+    drive_through(system, ReferencePath::from_records(overview), overview, records, observe)
 }
 
-fn drive_through(
+fn drive_through<R: Borrow<Record>>(
     system: PointSystem,
     truth: ReferencePath,
-    records: &[Record],
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
     observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
-    let true_positions = TruePositions::from_records(records);
-    let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
+    let true_positions = TruePositions::from_records(overview);
+    let last_odometry = overview.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let last_truth = truth.last_stamp().or(true_positions.last_stamp());
     let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
-    let true_map = true_landmarks(records);
+    let true_map = true_landmarks(overview);
     let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
         .through(records, observe);
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;
@@ -116,7 +135,7 @@ impl PointRun {
     /// The same of the batch that the filter is compared with.
     pub(super) fn batch_positions(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
         let batch = self.smoothed.as_ref().filter(|smoothed| smoothed.is_batch);
-        let estimates = batch.map_or(&[][..], |smoothed| &smoothed.estimates);
+        let estimates = batch.map_or(&[][..], |smoothed| smoothed.estimates.kept());
         let evaluated = estimates.iter().filter(|estimate| estimate.stamp <= self.evaluated_until);
         let pair =
             |at: &StampedEstimate| Some((self.system.antenna(&at.pose), self.true_positions.near(at.stamp)?));
@@ -154,7 +173,7 @@ fn fitted_start(mut pilot: PointSystem, records: &[Record], positions: &TruePosi
         last = now;
         travelled < START_LENGTH
     };
-    records.iter().take_while(is_short).for_each(drop);
+    records.iter().take(OVERVIEW_HEAD).take_while(is_short).for_each(drop);
     let pair = |stamped_estimate: &StampedEstimate| {
         Some((pilot.antenna(&stamped_estimate.pose), positions.near(stamped_estimate.stamp)?))
     };

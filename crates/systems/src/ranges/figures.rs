@@ -31,7 +31,8 @@ pub fn summarize(run: &RangeRun) -> ReportRun {
     metrics.push(Metric::new("range_scale", run.estimate.calibration.log_scale.exp(), ""));
     metrics.push(Metric::new("range_sigma_m", run.estimate.range_sigma, "m"));
     let notes = vec!["A batch over the whole log: each pose uses all measurements. Step times are the batch's, spread over the poses.".to_owned()];
-    let timings = timings(&run.stamped_estimates);
+    let longest = run.stamped_estimates.iter().map(|at| at.step).max().unwrap_or_default();
+    let timings = timings(&run.stamped_estimates, longest);
     ReportRun { metrics, timings, notes, events: run.events.counts(), ..ReportRun::default() }
 }
 

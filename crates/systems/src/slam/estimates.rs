@@ -25,7 +25,7 @@ impl<F> Default for SlamDrawingState<F> {
     }
 }
 
-/// The map is written with every so many estimates: it changes slowly and is long.
+/// The map is written with every so many estimates, or two for each of its landmarks: it changes slowly and is long.
 const MAP_PERIOD: usize = 20;
 /// In a long log the period is this part of the estimates so far, so that the maps do not outgrow the log.
 const MAP_PERIOD_SHARE: usize = 100;
@@ -42,12 +42,14 @@ where
         system: &SlamSystem<F>,
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
-        for estimate in &system.stamped_estimates()[self.n_written..] {
+        for estimate in system.newest_estimates(system.n_estimates() - self.n_written) {
             self.n_written += 1;
             self.path.push(estimate.stamp, &estimate.pose, writer)?;
             write_robot(writer, estimate.stamp, &estimate.pose, &estimate.covariance)?;
             if self.n_written >= self.next_map {
-                self.next_map = self.n_written + MAP_PERIOD.max(self.n_written / MAP_PERIOD_SHARE);
+                let n_landmarks = system.filter().n_landmarks();
+                self.next_map =
+                    self.n_written + MAP_PERIOD.max(2 * n_landmarks).max(self.n_written / MAP_PERIOD_SHARE);
                 F::draw_map(system.filter(), estimate.stamp, writer)?;
             }
         }

@@ -2,6 +2,7 @@ use std::{collections::BTreeSet, time::Duration};
 
 use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allocator};
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
     AnyAssociation, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation,
@@ -9,7 +10,7 @@ use wayfix_slam_ekf::{
 };
 
 use super::SlamFollower;
-use crate::system::EventCounts;
+use crate::system::{EventCounts, MOST_ESTIMATES};
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +42,11 @@ where
     /// Smoothes what the filter pairs.
     pub(crate) follower: Option<Box<dyn SlamFollower<M>>>,
     pub(crate) dead_reckoning: Pose2<f64>,
-    pub(super) stamped_estimates: Vec<StampedEstimate>,
+    pub(super) stamped_estimates: Decimated<StampedEstimate>,
+    /// Those that came with the last record.
+    pub(super) newest_estimates: Vec<StampedEstimate>,
+    /// Longest computing time of an estimate.
+    pub(super) longest_step: Duration,
     pub(crate) events: EventCounts,
     /// Given anchors that no observation has matched.
     pub(super) unseen_anchors: BTreeSet<LandmarkId>,
@@ -65,7 +70,9 @@ where
             association,
             follower: None,
             dead_reckoning: start,
-            stamped_estimates: Vec::new(),
+            stamped_estimates: Decimated::new(MOST_ESTIMATES),
+            newest_estimates: Vec::new(),
+            longest_step: Duration::ZERO,
             events: EventCounts::default(),
             unseen_anchors: BTreeSet::new(),
             step: Duration::ZERO,
@@ -178,6 +185,8 @@ where
         if let Some(follower) = &mut self.follower {
             estimate.step += follower.estimated(&self.filter, &estimate);
         }
+        self.longest_step = self.longest_step.max(estimate.step);
+        self.newest_estimates.push(estimate);
         self.stamped_estimates.push(estimate);
     }
 }

@@ -2,6 +2,7 @@ use std::{collections::BTreeMap, time::Duration};
 
 use nalgebra::{DefaultAllocator, Matrix3, Vector2};
 use wayfix_estimation_traits::{Pose2, TangentMatrix};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim, Observation, RobotDim, SlamAlloc,
     UpdateReport,
@@ -35,10 +36,10 @@ where
 }
 
 /// What a smoother makes of a run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SmoothedRun {
-    /// One for each estimate of the filter, at the same stamps.
-    pub estimates: Vec<StampedEstimate>,
+    /// One for each estimate of the filter, at the same stamps, or a sample of them.
+    pub estimates: Decimated<StampedEstimate>,
     /// Landmarks by identity.
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
     /// The least squares problem of a batch before it is solved, where it is asked for: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).

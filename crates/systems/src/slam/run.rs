@@ -1,7 +1,10 @@
 use std::borrow::Borrow;
 
 use nalgebra::{DefaultAllocator, Vector2};
-use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
+use wayfix_evaluation::{
+    errors::{PoseWithTruth, ReferencePath, TruePositions},
+    plot::Decimated,
+};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
@@ -61,7 +64,8 @@ where
         match follower.finish() {
             Ok(mut smoothed) => {
                 if !smoothed.is_batch {
-                    self.system.estimator.stamped_estimates = std::mem::take(&mut smoothed.estimates);
+                    self.system.estimator.stamped_estimates =
+                        std::mem::replace(&mut smoothed.estimates, Decimated::new(0));
                 }
                 self.smoothed = Some(smoothed);
             }
@@ -74,7 +78,7 @@ where
     /// The batch over the same measurements, with true poses; without covariances.
     pub(crate) fn batch_samples(&self) -> Vec<PoseWithTruth> {
         let batch = self.smoothed.as_ref().filter(|smoothed| smoothed.is_batch);
-        let estimates = batch.map_or(&[][..], |smoothed| &smoothed.estimates);
+        let estimates = batch.map_or(&[][..], |smoothed| smoothed.estimates.kept());
         let evaluated = estimates.iter().filter(|estimate| estimate.stamp <= self.evaluated_until);
         evaluated.filter_map(|at| self.truth.sample(at.stamp, at.pose, &at.covariance)).collect()
     }

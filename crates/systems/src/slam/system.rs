@@ -180,9 +180,18 @@ where
     pub fn dead_reckoning(&self) -> &Pose2<f64> {
         &self.estimator.dead_reckoning
     }
-    /// One estimate for every scan of the sensor.
+    /// One estimate for every scan of the sensor, evenly spaced: all of a short log, at most [`MOST_ESTIMATES`](crate::system::MOST_ESTIMATES) of a long one.
     pub fn stamped_estimates(&self) -> &[StampedEstimate] {
-        &self.estimator.stamped_estimates
+        self.estimator.stamped_estimates.kept()
+    }
+    /// Number of estimates so far.
+    pub fn n_estimates(&self) -> usize {
+        self.estimator.stamped_estimates.n_seen()
+    }
+    /// The last `n` estimates, if so many came with the last record.
+    pub(super) fn newest_estimates(&self, n: usize) -> &[StampedEstimate] {
+        let newest = &self.estimator.newest_estimates;
+        &newest[newest.len().saturating_sub(n)..]
     }
     /// What the run observed, where that was to be recorded.
     pub fn observability(&self) -> Option<&ObservabilityRecorder> {
@@ -200,6 +209,7 @@ where
             return Ok(());
         }
         self.taken_until = record.stamp;
+        self.estimator.newest_estimates.clear();
         match &record.data {
             RecordData::PoseMeasurement(measured) => self.take_or_wait(record.stamp, measured),
             RecordData::OdometryIncrement(increment) => {

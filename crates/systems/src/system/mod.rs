@@ -14,12 +14,15 @@ pub(crate) use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
 pub use wayfix_evaluation::terminal::Stopwatch;
 pub use wayfix_record_checks::{
     EventCounts, FASTEST, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck,
-    NamedRecordKind, ODOMETRY, RefusedRecord, VELOCITY_TIMEOUT, check_overlap, check_velocity, warn_of_lag,
-    without_odometry_delay,
+    LogOverview, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, RefusedRecord, TurnHistory, VELOCITY_TIMEOUT,
+    check_overlap, check_velocity, without_odometry_delay,
 };
 pub use wayfix_slam_ekf::MotionStatistics;
 
 use wayfix_sensor_log::Record;
+
+/// Estimates that a run keeps for figures and pictures: two hours at 9 Hz.
+pub const MOST_ESTIMATES: usize = 1 << 16;
 
 /// An estimator that processes a log: takes the records that it supports, in time order, and counts events.
 ///

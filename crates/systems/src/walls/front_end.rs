@@ -19,7 +19,9 @@ use super::{
 };
 use crate::{
     slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
-    system::{EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, check_velocity},
+    system::{
+        EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, TurnHistory, check_velocity,
+    },
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -48,8 +50,8 @@ pub struct WallSlamFrontEnd {
     pub(super) waiting: VecDeque<WaitingScan>,
     /// Heading by the points of the last scan alone, seen from the last look, rad.
     laser_heading: Option<f64>,
-    /// By how much the robot has turned to each estimate from the one before, by the scans alone, rad.
-    seen_turns: Vec<Option<f64>>,
+    /// By how much the robot has turned to each scan from the one before, by odometry and by the scans alone.
+    pub(super) turns: TurnHistory,
     /// Points for the picture of the map.
     pub(super) scan_sample: ScanSample,
 }
@@ -92,15 +94,10 @@ impl WallSystem {
             plausible: IncrementPlausibilityCheck::default(),
             waiting: VecDeque::new(),
             laser_heading: None,
-            seen_turns: Vec::new(),
+            turns: TurnHistory::default(),
             scan_sample: ScanSample::default(),
         };
         Ok(Self::new(front_end, estimator))
-    }
-
-    /// The rotation to each estimate from the one before by the scans alone, rad, where they tell it.
-    pub(super) fn seen_turns(&self) -> &[Option<f64>] {
-        &self.front_end.seen_turns
     }
 }
 
@@ -304,7 +301,7 @@ impl WallSlamFrontEnd {
             };
         estimator.step += stopwatch.elapsed();
         self.add_stamped_estimate(stamp, corrected, estimator);
-        self.seen_turns.push(seen_turn);
+        self.turns.push(stamp, estimator.dead_reckoning, seen_turn);
         Ok(())
     }
 

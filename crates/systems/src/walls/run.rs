@@ -11,7 +11,7 @@ use crate::{
     slam::{
         AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_reference, warn_of_start,
     },
-    system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_lag, without_odometry_delay},
+    system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, without_odometry_delay},
 };
 
 /// A log of scans that went through EKF-SLAM with walls.
@@ -111,14 +111,11 @@ fn drive_through<R: Borrow<Record>>(
     let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
     let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
         .through(records, observe);
-    let stamped_estimates = run.system.stamped_estimates();
-    if stamped_estimates.is_empty() {
+    if run.system.stamped_estimates().is_empty() {
         let n_before = run.events().get("record_before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
-    let dead_reckoning: Vec<_> = stamped_estimates.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
-    let seen_turns = run.system.seen_turns().to_vec();
-    warn_of_lag(run.events(), &dead_reckoning, &seen_turns, delay);
+    run.system.front_end.turns.warn_of_lag(&mut run.system.estimator.events, delay);
     let samples = run.samples();
     let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME

@@ -113,8 +113,8 @@ fn write_report(out: &Path, suite: &str, run: ReportRun, seed: u64) -> Result<()
     }
     let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();
     let suites = vec![ReportSuite { name: suite.to_owned(), runs: vec![run] }];
-    FullReport { suites, seed, commit: None, machine: MachineInfo::detect(), ..FullReport::default() }
-        .write(out)?;
+    FullReport { suites, seed, machine: MachineInfo::detect(), ..FullReport::default() }
+        .write_unjudged(out)?;
     print_message(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
     Ok(())
 }

@@ -1,10 +1,8 @@
-use wayfix_sensor_log::{
-    EncodedImage, LaserScan, Log, LogCompleteness, LogWarning, ReadReport, Record, RecordData,
-};
+use wayfix_sensor_log::{Log, LogCompleteness, LogError, LogWarning, ReadReport, Record, RecordData};
 
 use super::run::interrupt;
 use wayfix_evaluation::terminal::print_message;
-use wayfix_systems::system::EventCounts;
+use wayfix_systems::system::{EventCounts, LogOverview};
 
 /// Reads all records of a log; prints read problems and assumptions.
 pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
@@ -15,24 +13,23 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
     (records, read)
 }
 
-/// Reads all of a log but what its scans and images hold, which a long log has too much of; prints read problems and assumptions.
-pub(super) fn read_overview(log: Log) -> (Vec<Record>, ReadReport) {
-    let mut log = log;
-    let records = log.by_ref().map(without_bulk).collect();
-    let read = log.report().clone();
-    if !read.is_clean() {
-        print_message(&read);
+/// Reads what must be known of a log beforehand; prints read problems and assumptions.
+pub(super) fn read_overview(
+    open: impl Fn() -> Result<Log, LogError>,
+    n_images: usize,
+) -> Result<LogOverview, LogError> {
+    let overview = LogOverview::read(open, n_images)?;
+    if !overview.read.is_clean() {
+        print_message(&overview.read);
     }
-    (records, read)
+    Ok(overview)
 }
 
-fn without_bulk(record: Record) -> Record {
-    let data = match record.data {
-        RecordData::Scan(scan) => RecordData::Scan(LaserScan { ranges: Vec::new(), ..scan }),
-        RecordData::Image(image) => RecordData::Image(EncodedImage { bytes: [].into(), ..image }),
-        data => data,
-    };
-    Record { data, ..record }
+/// The whole log in the place of an overview.
+pub(super) fn whole(records: Vec<Record>, read: ReadReport) -> LogOverview {
+    let is_image = |record: &&Record| matches!(record.data, RecordData::Image(_));
+    let (n_records, n_images) = (records.len(), records.iter().filter(is_image).count());
+    LogOverview { records, n_records, n_images, read }
 }
 
 /// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.

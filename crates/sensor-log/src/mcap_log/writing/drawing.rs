@@ -1,14 +1,15 @@
 use foxglove::messages::{
-    Color, CubePrimitive, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose,
-    SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive,
-    points_annotation,
+    Color, CubePrimitive, CylinderPrimitive, ImageAnnotations, LinePrimitive, Point2, Point3,
+    PointsAnnotation, Pose, SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp, Vector3,
+    line_primitive, points_annotation,
 };
 use wayfix_estimation_traits::Pose2;
 
 use super::encode;
 
-/// Points on the outline of an ellipse: it is nowhere further off than 1 % of an axis.
-const ELLIPSE_POINTS: usize = 24;
+/// Thickness of a drawn ellipse, m, and its opacity: what lies below shows.
+const ELLIPSE_THICKNESS: f64 = 0.01;
+const ELLIPSE_OPACITY: f64 = 0.3;
 /// Width of lines and size of letters, screen pixels.
 const LINE_PIXELS: f64 = 2.0;
 const TEXT_PIXELS: f64 = 12.0;
@@ -31,7 +32,7 @@ pub struct ViewerDrawing {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DrawingShape {
-    /// The outline of an ellipse, for instance of a covariance.
+    /// A translucent ellipse, for instance of a covariance.
     Ellipse {
         /// Centre.
         center: [f64; 2],
@@ -108,10 +109,16 @@ fn entity(timestamp: Timestamp, frame: &str, drawing: &ViewerDrawing) -> SceneEn
     };
     match &drawing.shape {
         DrawingShape::Ellipse { center, semi_axes, angle } => {
-            let outline = ellipse_outline(*center, *semi_axes, *angle);
-            entity.lines.push(line(line_primitive::Type::LineLoop, &outline, color));
+            let ([x, y], [long, short]) = (*center, *semi_axes);
+            entity.cylinders.push(CylinderPrimitive {
+                pose: Some(encode::pose(&Pose2::new(x, y, *angle))),
+                size: Some(Vector3 { x: 2.0 * long, y: 2.0 * short, z: ELLIPSE_THICKNESS }),
+                bottom_scale: 1.0,
+                top_scale: 1.0,
+                color: Some(Color { a: a * ELLIPSE_OPACITY, ..color }),
+            });
         }
-        DrawingShape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
+        DrawingShape::Path(points) => entity.lines.push(path(points, color)),
         DrawingShape::Wall { ends: [[x, y], [to_x, to_y]], height } => {
             let (dx, dy) = (to_x - x, to_y - y);
             let mut pose = encode::pose(&Pose2::new(x + dx / 2.0, y + dy / 2.0, libm::atan2(dy, dx)));
@@ -131,18 +138,9 @@ fn entity(timestamp: Timestamp, frame: &str, drawing: &ViewerDrawing) -> SceneEn
     entity
 }
 
-fn ellipse_outline([x, y]: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Vec<[f64; 2]> {
-    let (sin, cos) = angle.sin_cos();
-    let point = |i: usize| {
-        let (s, c) = (std::f64::consts::TAU * i as f64 / ELLIPSE_POINTS as f64).sin_cos();
-        [x + cos * a * c - sin * b * s, y + sin * a * c + cos * b * s]
-    };
-    (0..ELLIPSE_POINTS).map(point).collect()
-}
-
-fn line(kind: line_primitive::Type, points: &[[f64; 2]], color: Color) -> LinePrimitive {
+fn path(points: &[[f64; 2]], color: Color) -> LinePrimitive {
     LinePrimitive {
-        r#type: kind.into(),
+        r#type: line_primitive::Type::LineStrip.into(),
         pose: Some(encode::identity()),
         thickness: LINE_PIXELS,
         scale_invariant: true,
@@ -169,17 +167,16 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     #[test]
-    fn outline_lies_on_the_ellipse_from_the_first_axis() {
-        let (center, [a, b], angle) = ([1.0, -2.0], [3.0, 0.5], 2.0_f64);
-        let outline = ellipse_outline(center, [a, b], angle);
-        for [x, y] in &outline {
-            let (dx, dy) = (x - center[0], y - center[1]);
-            let along = dx * angle.cos() + dy * angle.sin();
-            let across = dy * angle.cos() - dx * angle.sin();
-            assert_abs_diff_eq!((along / a).powi(2) + (across / b).powi(2), 1.0, epsilon = 1e-12);
-        }
-        assert_abs_diff_eq!(outline[0][0], center[0] + a * angle.cos(), epsilon = 1e-12);
-        assert_abs_diff_eq!(outline[0][1], center[1] + a * angle.sin(), epsilon = 1e-12);
+    fn ellipse_is_a_flat_cylinder_along_its_first_axis() {
+        let shape = DrawingShape::Ellipse { center: [1.0, -2.0], semi_axes: [3.0, 0.5], angle: 2.0 };
+        let drawing = ViewerDrawing { id: "robot".to_owned(), color: [0.0, 0.5, 1.0, 1.0], shape };
+        let message = scene_update(Timestamp::new(1, 5), "world", &[drawing]);
+        let [cylinder] = &message.entities[0].cylinders[..] else { panic!("one cylinder") };
+        let (pose, size) = (cylinder.pose.as_ref().unwrap(), cylinder.size.unwrap());
+        let (position, turn) = (pose.position.unwrap(), pose.orientation.unwrap());
+        assert_eq!((position.x, position.y, size.x, size.y), (1.0, -2.0, 6.0, 1.0));
+        assert_abs_diff_eq!(2.0 * libm::atan2(turn.z, turn.w), 2.0, epsilon = 1e-12);
+        assert_eq!((cylinder.bottom_scale, cylinder.top_scale), (1.0, 1.0));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all, read_overview},
+    read_problems::{add_read_problems, read_all, read_overview, whole},
     truth::TruthFile,
 };
 use super::interrupt;
@@ -18,7 +18,7 @@ use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
     color::{self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
-    system::{RunStep, Stopwatch, System, without_odometry_delay},
+    system::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay},
 };
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
@@ -147,9 +147,14 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let origin = log.meta().first_format();
     // What is to be sorted is kept.
     let is_kept = arguments.truth.truth.is_some() || params.odometry_delay != 0.0;
-    let (overview, read) = if is_kept { read_all(log) } else { read_overview(log) };
-    let overview = arguments.truth.put_into(overview)?;
-    let in_time = without_odometry_delay(&overview, params.odometry_delay);
+    let overview = if is_kept {
+        let (records, read) = read_all(log);
+        whole(arguments.truth.put_into(records)?, read)
+    } else {
+        read_overview(open, 0)?
+    };
+    let LogOverview { records: known, n_records, n_images, read } = overview;
+    let in_time = without_odometry_delay(&known, params.odometry_delay);
     let records = || -> Result<Box<dyn Iterator<Item = Cow<'_, Record>> + '_>> {
         Ok(if is_kept {
             Box::new(in_time.iter().map(Cow::Borrowed))
@@ -161,11 +166,11 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut particles = ParticleSnapshots::new(color::n_images(&overview));
-    let bar = terminal::bar(overview.len(), "colour localization");
+    let mut particles = ParticleSnapshots::new(n_images);
+    let bar = terminal::bar(n_records, "colour localization");
     let start = arguments.start.map(|start| start.0);
     let color = color::run_streamed(
-        &overview,
+        &known,
         records()?,
         map,
         bank,
@@ -191,7 +196,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    outputs.show(run, || plots(&mut color, color::n_images(&overview), records()?, &particles))?;
+    outputs.show(run, || plots(&mut color, n_images, records()?, &particles))?;
     Ok(ExitCode::SUCCESS)
 }
 

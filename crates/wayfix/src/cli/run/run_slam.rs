@@ -1,4 +1,4 @@
-use std::{fs, path::PathBuf, process::ExitCode};
+use std::{borrow::Cow, fs, path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result, ensure};
 use nalgebra::DefaultAllocator;
@@ -8,7 +8,7 @@ use wayfix_evaluation::{
     report::ReportRun,
     terminal::{self, print, print_message},
 };
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
+use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport, Record};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
@@ -23,7 +23,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all, read_overview},
+    read_problems::{add_read_problems, read_all, read_overview, whole},
     truth::TruthFile,
 };
 use super::{
@@ -152,10 +152,14 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let log = open()?;
     let meta = log.meta().clone();
     let is_kept = arguments.truth.truth.is_some();
-    let (records, read) = if is_kept { read_all(log) } else { read_overview(log) };
-    let records = arguments.truth.put_into(records)?;
-    if run_walls::is_for(&records) {
-        let input = run_walls::Input { records, is_kept, origin: meta.first_format(), read };
+    let overview = if is_kept {
+        let (records, read) = read_all(log);
+        whole(arguments.truth.put_into(records)?, read)
+    } else {
+        read_overview(open, 0)?
+    };
+    if run_walls::is_for(&overview.records) {
+        let input = run_walls::Input { overview, is_kept, origin: meta.first_format() };
         return run_walls::main(&arguments, input, &open);
     }
     let origin = meta.first_format();
@@ -167,10 +171,18 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let saved: Option<SavedPointMap> = arguments.saved_map()?;
     execute(
         &arguments,
-        (origin, records.len(), &read),
-        |observe| match saved {
-            Some(saved) => points::run_on(saved, &records, &params, observe),
-            None => points::run(&records, &params, observe),
+        (origin, overview.n_records, &overview.read),
+        |observe| {
+            let known = &overview.records;
+            let records: Box<dyn Iterator<Item = Cow<'_, Record>>> = if is_kept {
+                Box::new(known.iter().map(Cow::Borrowed))
+            } else {
+                Box::new(open()?.map(Cow::Owned))
+            };
+            match saved {
+                Some(saved) => points::run_on(saved, known, records, &params, observe),
+                None => points::run_streamed(known, records, &params, observe),
+            }
         },
         |run| Ok(points::summarize(run)),
         points::plots,

@@ -2,13 +2,11 @@ use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{
-    Log, LogError, LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations,
-};
+use wayfix_sensor_log::{Log, LogError, LogFormat, PoseRelation, Record, RecordData, read_relations};
 use wayfix_systems::{
     settings::from_toml,
     slam::AssociationRule,
-    system::without_odometry_delay,
+    system::{LogOverview, without_odometry_delay},
     walls::{self, SavedWallMap, WallSlamParams},
 };
 
@@ -26,17 +24,16 @@ pub(in crate::cli) fn is_for(records: &[Record]) -> bool {
 
 /// A log of scans.
 pub(in crate::cli) struct Input {
-    pub(in crate::cli) records: Vec<Record>,
-    /// Whether the scans have their ranges; else they are read again.
+    pub(in crate::cli) overview: LogOverview,
+    /// Whether it is the whole log; else the log is read again.
     pub(in crate::cli) is_kept: bool,
     pub(in crate::cli) origin: LogFormat,
-    pub(in crate::cli) read: ReadReport,
 }
 
 /// `wayfix run slam` on a log of scans, which `open` opens again.
 pub(in crate::cli) fn main(
     arguments: &run_slam::Arguments,
-    Input { records, is_kept, origin, read }: Input,
+    Input { overview, is_kept, origin }: Input,
     open: &dyn Fn() -> Result<Log, LogError>,
 ) -> Result<ExitCode> {
     ensure!(
@@ -57,20 +54,27 @@ pub(in crate::cli) fn main(
     let rule = arguments.association;
     run_slam::execute(
         arguments,
-        (origin, records.len(), &read),
+        (origin, overview.n_records, &overview.read),
         |observe| {
             // What is to be sorted is kept.
             if is_kept || params.odometry_delay != 0.0 {
-                let records = if is_kept { records } else { open()?.read_all().0 };
-                let in_time = without_odometry_delay(&records, params.odometry_delay);
+                let read_again;
+                let records = if is_kept {
+                    &overview.records
+                } else {
+                    read_again = open()?.read_all().0;
+                    &read_again
+                };
+                let in_time = without_odometry_delay(records, params.odometry_delay);
                 return match saved {
-                    Some(saved) => walls::run_on(saved, &records, in_time.iter(), &params, rule, observe),
-                    None => walls::run_streamed(&records, in_time.iter(), &params, observe),
+                    Some(saved) => walls::run_on(saved, records, in_time.iter(), &params, rule, observe),
+                    None => walls::run_streamed(records, in_time.iter(), &params, observe),
                 };
             }
+            let known = &overview.records;
             match saved {
-                Some(saved) => walls::run_on(saved, &records, open()?, &params, rule, observe),
-                None => walls::run_streamed(&records, open()?, &params, observe),
+                Some(saved) => walls::run_on(saved, known, open()?, &params, rule, observe),
+                None => walls::run_streamed(known, open()?, &params, observe),
             }
         },
         |run| {

@@ -2,7 +2,7 @@
 
 mod arguments;
 
-use std::{path::Path, process::ExitCode};
+use std::{borrow::Cow, path::Path, process::ExitCode};
 use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -11,7 +11,7 @@ use wayfix_appearance_cml::{
     StartPosePrior,
 };
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport};
+use wayfix_sensor_log::{Log, LogError, LogFormat, LogOpenOptions, ReadReport, Record};
 
 pub(in crate::cli) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
@@ -19,7 +19,7 @@ use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 use super::super::{
     input::read_toml,
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all},
+    read_problems::{add_read_problems, read_all, read_overview, whole},
 };
 use super::interrupt;
 use crate::commented::commented;
@@ -29,7 +29,7 @@ use wayfix_systems::{
         self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem,
         CmlTask, PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
     },
-    system::{RunStep, Stopwatch, System},
+    system::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay},
 };
 use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
@@ -46,7 +46,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let saved = arguments.given_map().map(cml::read_map).transpose()?;
     let stopwatch = Stopwatch::start();
-    let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
+    let Input { mut plan, read, origin, n_records, is_kept } =
+        arguments.input(&mut params, saved.as_ref())?;
     let task = arguments.task();
     let reader = ViewDescriptorReader::new(params.panorama_descriptor, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
@@ -54,10 +55,18 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut outputs = Outputs::open("cml", &arguments.common)?;
     let mut estimates: Option<CmlEstimateRecorder> = outputs.estimates(origin)?;
     let mut saver = arguments.save.clone().map(|path| PeriodicMapSaver::new(path, arguments.save_every));
-    let bar = terminal::bar(plan.records.len(), "appearance map");
-    let run = cml::run(
+    let bar = terminal::bar(n_records, "appearance map");
+    let in_time;
+    let records: Box<dyn Iterator<Item = Cow<'_, Record>>> = if is_kept {
+        in_time = without_odometry_delay(&plan.records, params.odometry_delay);
+        Box::new(in_time.iter().map(Cow::Borrowed))
+    } else {
+        Box::new(arguments.open()?.map(Cow::Owned))
+    };
+    let run = cml::run_streamed(
         system,
         &plan,
+        records,
         task,
         start,
         &params,
@@ -94,6 +103,9 @@ struct Input {
     plan: CmlRunPlan,
     read: ReadReport,
     origin: LogFormat,
+    n_records: usize,
+    /// Whether the plan has all records; else they are read again.
+    is_kept: bool,
 }
 
 impl Arguments {
@@ -135,15 +147,18 @@ impl Arguments {
         });
         let camera = CameraViewGeometry { donut: self.donut(), sense: told.or(saved_sense) };
         if !self.log.is_empty() {
-            let options = LogOpenOptions { topics: self.topics.topics.clone(), ..LogOpenOptions::default() };
-            let log = wayfix_sensor_log::open_all(&self.log, &options)?;
+            let log = self.open()?;
             let origin = log.meta().first_format();
-            let (records, read) = read_all(log);
-            return Ok(Input {
-                plan: CmlRunPlan::of_log(records, self.withhold(), params, &camera)?,
-                read,
-                origin,
-            });
+            // What is to be sorted or taught is kept.
+            let is_kept = self.withhold() > 0 || params.odometry_delay != 0.0;
+            let LogOverview { records, n_records, read, .. } = if is_kept {
+                let (records, read) = read_all(log);
+                whole(records, read)
+            } else {
+                read_overview(|| self.open(), cml::N_EVIDENCE)?
+            };
+            let plan = CmlRunPlan::of_log(records, self.withhold(), params, &camera)?;
+            return Ok(Input { plan, read, origin, n_records, is_kept });
         }
         let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
             bail!("neither a log nor frames")
@@ -167,7 +182,13 @@ impl Arguments {
         for recording in taught.iter().chain([&recording]) {
             read.join(&recording.read);
         }
-        Ok(Input { plan, read, origin: LogFormat::Images })
+        let n_records = plan.records.len();
+        Ok(Input { plan, read, origin: LogFormat::Images, n_records, is_kept: true })
+    }
+
+    fn open(&self) -> Result<Log, LogError> {
+        let options = LogOpenOptions { topics: self.topics.topics.clone(), ..LogOpenOptions::default() };
+        wayfix_sensor_log::open_all(&self.log, &options)
     }
 
     fn begin(
