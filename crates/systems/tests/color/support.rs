@@ -104,10 +104,12 @@ impl Judged {
     }
 }
 
-/// On the field of the league with the built-in priors, from near the truth.
+/// On the field of the league with the built-in priors, from near the truth. A search every second makes drives short.
 pub(crate) fn localize(records: &[Record]) -> Vec<Judged> {
     let map = field_map().expect("a constant map");
-    localize_with(records, map, &priors::built_in().expect("priors"), &ColorSystemParams::default())
+    let mut params = ColorSystemParams::default();
+    params.localizer.search.search_interval = 1.0;
+    localize_with(records, map, &priors::built_in().expect("priors"), &params)
 }
 
 pub(crate) fn localize_with(
