@@ -47,8 +47,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     let StampedInput { stamps, input } =
         StampedInput::new(recording, known.unwrap_or(Pose2::new(0.0, 0.0, 0.0)), &mut events);
     ensure!(!input.ranges.is_empty(), "no range is positive and within the time of odometry");
-    let params = RangeOnlyParams::default();
-    let estimate = range_only::estimate(&input, &params)?;
+    let estimate = range_only::estimate(&input, &RangeOnlyParams::default())?;
     let dead_reckoning = input.dead_reckoning();
     let step = stopwatch.elapsed() / stamps.len() as u32;
     let stamped = |(index, covariance): &(usize, Matrix3<f64>)| StampedEstimate {
@@ -61,7 +60,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
         step,
     };
     let stamped_estimates: Vec<_> = estimate.pose_covariances.iter().map(stamped).collect();
-    say_assumptions(&estimate, &params.calibration, &mut events);
+    say_assumptions(&estimate, &CalibrationPrior::default(), &mut events);
     let span = stamps.first().copied().zip(stamps.last().copied());
     warn_of_no_overlap(&mut events, &path, span);
     let true_beacons = truth.iter().filter_map(|record| match record.data {
@@ -74,9 +73,8 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
 
 fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, events: &mut EventCounts) {
     let RangeOnlyNoise { translation_per_sqrt_meter, heading_per_sqrt_meter, .. } = estimate.noise;
-    let range = estimate.range_sigma;
+    let (range, sigma) = (estimate.range_sigma, estimate.calibration_sigma);
     let Calibration { bias, log_scale } = estimate.calibration;
-    let sigma = estimate.calibration_sigma;
     events.warn(
         "receiver_calibration_estimated",
         format!(
@@ -93,7 +91,7 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, event
     events.warn(
         "odometry_scale_and_direction_unknown",
         format!(
-            "no range tells the scale of odometry, nor the angle between heading and direction of driving: covariances hold {:.1} % of the distance from the start, by the scale of the receiver",
+            "no range tells scale and direction of odometry: covariances hold {:.1} % of the distance from the start, by the scale of the receiver",
             100.0 * estimate.odometry_error_sigma
         ),
     );
