@@ -15,8 +15,9 @@ const SCALES: [f64; 4] = [0.8, 0.9, 1.1, 1.2];
 /// Number of frames that a tracker starts from. [Wu, Lim & Yang 2013, "temporal robustness"]
 const N_START_FRAMES: usize = 20;
 
-/// Frames with a true box each.
-type Film = Vec<(RgbImage, BoundingBox)>;
+/// A frame and its true box.
+type Frame = (RgbImage, BoundingBox);
+type Film = Vec<Frame>;
 
 /// A tracker on one recording from other starts: from shifted and scaled first boxes, from later frames, and in the film mirrored, reversed and at
 /// half size.
@@ -30,7 +31,7 @@ pub(crate) fn starts(
     params: &TrackParams,
 ) -> Result<ReportRun> {
     let film = read(log, truth)?;
-    let overlap = |frames: &[(RgbImage, BoundingBox)], start| follow(frames, start, method, params);
+    let overlap = |frames: &[Frame], start| follow(frames, start, method, params);
     let first = film.first().context("a film without frames")?.1;
     let shifted = shifted(&first)?.into_par_iter().map(|start| overlap(&film, start));
     let later = (0..N_START_FRAMES).into_par_iter().map(|k| {
@@ -42,11 +43,11 @@ pub(crate) fn starts(
         [("shifted", shifted.collect::<Result<Vec<_>>>()?), ("later", later.collect::<Result<_>>()?)];
     for (name, overlaps) in groups {
         let least = overlaps.iter().copied().fold(f64::INFINITY, f64::min);
-        metrics.push(Metric::new(&format!("iou_mean_{name}_starts"), mean(&overlaps), ""));
-        metrics.push(Metric::new(&format!("iou_least_{name}_start"), least, ""));
+        metrics.push(Metric::new(format!("iou_mean_{name}_starts"), mean(&overlaps), ""));
+        metrics.push(Metric::new(format!("iou_least_{name}_start"), least, ""));
     }
     for (name, film) in changed(&film)? {
-        metrics.push(Metric::new(&format!("iou_mean_{name}"), overlap(&film, film[0].1)?, ""));
+        metrics.push(Metric::new(format!("iou_mean_{name}"), overlap(&film, film[0].1)?, ""));
     }
     Ok(ReportRun { metrics, ..ReportRun::default() })
 }
@@ -76,7 +77,7 @@ fn shifted(first: &BoundingBox) -> Result<Vec<BoundingBox>> {
 }
 
 fn changed(film: &Film) -> Result<[(&'static str, Film); 3]> {
-    let with = |change: &dyn Fn(&RgbImage, &BoundingBox) -> Result<(RgbImage, BoundingBox)>| {
+    let with = |change: &dyn Fn(&RgbImage, &BoundingBox) -> Result<Frame>| {
         film.iter().map(|(picture, truth)| change(picture, truth)).collect::<Result<Film>>()
     };
     let mirrored = with(&|picture, truth| {
@@ -95,12 +96,7 @@ fn changed(film: &Film) -> Result<[(&'static str, Film); 3]> {
 }
 
 /// Mean overlap over the frames, 0 where the target is reported lost.
-fn follow(
-    frames: &[(RgbImage, BoundingBox)],
-    start: BoundingBox,
-    method: TrackingMethod,
-    params: &TrackParams,
-) -> Result<f64> {
+fn follow(frames: &[Frame], start: BoundingBox, method: TrackingMethod, params: &TrackParams) -> Result<f64> {
     let mut tracker = method.begin(params, &frames[0].0, &InitialTargetRegion::Box(start))?;
     let (mut rng, mut score) = (ChaCha8Rng::seed_from_u64(0), BoxScore::default());
     score.add(Some(&start), &frames[0].1);
