@@ -129,7 +129,7 @@ mod overview {
     }
 
     #[test]
-    fn last_records_stay_in_order_and_only_the_first_image_has_pixels() {
+    fn records_stay_in_order_and_one_image_has_pixels() {
         let (records, overview) = overview("store_area.mcap", 9);
         assert!(overview.records.is_sorted_by_key(|record| record.stamp));
         assert_eq!(overview.records.last().unwrap().stamp, records.last().unwrap().stamp);
