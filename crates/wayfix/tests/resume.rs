@@ -64,7 +64,8 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         })
         .unwrap();
         halves[0].write(&path).unwrap();
-        let resumed = run_on(SavedPointMap::read(&path).unwrap(), &records, &params, |_| {}).unwrap();
+        let resumed =
+            run_on(SavedPointMap::read(&path).unwrap(), &records, &records, &params, |_| {}).unwrap();
         assert!(halves[0].filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10, "{log:?}");
         let (whole, resumed) = (whole.system.save(), resumed.system.save());
         assert_eq!(resumed.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{log:?}");
@@ -146,7 +147,7 @@ fn a_forged_state_never_panics() {
         forged[20..24].copy_from_slice(&checksum.to_le_bytes());
         let resumed = SavedPointMap::from_bytes(&forged)
             .map_err(anyhow::Error::from)
-            .and_then(|map| run_on(map, &later, &params, |_| {}));
+            .and_then(|map| run_on(map, &later, &later, &params, |_| {}));
         n_refused += usize::from(resumed.is_err());
     }
     assert!(n_refused > 0, "some forgeries must be found");
