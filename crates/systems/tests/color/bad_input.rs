@@ -11,8 +11,8 @@ use crate::support::{Judged, drive, hall, localize, n_wrongly_tracked, sunny_hal
 
 /// Two seconds of trouble, at 10 frames a second: more than the 16 frames that a search uses.
 const DISTURBED: Range<usize> = 20..40;
-/// After it, 16 frames until the search sees none of it, one second to the next search and one to the search that confirms it, and 16 frames to believe it.
-const N_FRAMES: usize = DISTURBED.end + 16 + 10 + 10 + 16;
+/// After it, 16 frames until the search sees none of it, three seconds to the next search and three to the one that confirms it, and 16 frames to believe it.
+const N_FRAMES: usize = DISTURBED.end + 16 + 30 + 30 + 16;
 
 /// A robot that stands and looks around.
 pub(crate) fn standing() -> LeggedRobotParams {

@@ -104,12 +104,10 @@ impl Judged {
     }
 }
 
-/// On the field of the league with the built-in priors, from near the truth. A search every second makes drives short.
+/// On the field of the league with the built-in priors, from near the truth.
 pub(crate) fn localize(records: &[Record]) -> Vec<Judged> {
     let map = field_map().expect("a constant map");
-    let mut params = ColorSystemParams::default();
-    params.localizer.search.search_interval = 1.0;
-    localize_with(records, map, &priors::built_in().expect("priors"), &params)
+    localize_with(records, map, &priors::built_in().expect("priors"), &ColorSystemParams::default())
 }
 
 pub(crate) fn localize_with(
