@@ -79,7 +79,7 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     n_updates: usize,
     /// Since the last search, s.
     since_search: f64,
-    /// Whether a search after the one that found the present place found no better one.
+    /// Whether a second search found no better place than the present one.
     is_confirmed: bool,
     /// Log-likelihood ratios of the last frames to the background at the estimate, nats, and what each frame adds to the one before.
     log_ratios: VecDeque<(f64, f64)>,
@@ -277,7 +277,7 @@ where
         filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
     }
 
-    /// Searches for the robot if it is time to: at the start among the places that the start allows, later anywhere. Returns whether it found the present place to be the best.
+    /// Searches if it is time to: at the start where the start allows, later anywhere. Returns whether the present place is the best one.
     fn propose_places<R: Rng + ?Sized>(
         &self,
         buffer: &FrameBuffer,

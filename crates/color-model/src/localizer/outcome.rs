@@ -29,7 +29,7 @@ pub struct FrameOutcome {
 /// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalizationStatus {
-    /// One place has at least 95 % of the probability, the cluster of its particles is narrower than a place, and a search after the one that found it found none better.
+    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place. A second search found no better one.
     Tracking,
     /// Several places, one that is wider, or one that no second search has confirmed.
     Ambiguous,

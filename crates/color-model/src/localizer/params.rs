@@ -58,7 +58,8 @@ pub struct GlobalSearchParams {
     pub n_refined_places: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_first_round_moves: u32,
-    /// Time between searches after the start, s. Default 3: a search takes one to two seconds on two cores, so that a robot with ten images a second keeps up.
+    /// Time between searches after the start, s. Default 3. A search takes one to two seconds on two cores: with ten images a second,
+    /// the localizer keeps up.
     pub search_interval: f64,
 }
 

@@ -12,7 +12,7 @@ const SKY_LUX: f64 = 450.0;
 /// Illuminance by the sun outside the atmosphere, lux, and extinction by a clear one [IESNA RP-21].
 const SUN_LUX: f64 = 128_000.0;
 const EXTINCTION: f64 = 0.21;
-/// Angular diameter of the sun, radians: so wide is the edge of a patch, per metre from the window.
+/// Angular diameter of the sun, rad: the width of the edge of a patch over its distance from the window.
 const SUN_RAD: f64 = 0.0093;
 /// Height of the lower and the upper edge of the windows, metres. These and the next four are chosen.
 const WINDOW_HEIGHTS_M: [f64; 2] = [1.0, 2.2];

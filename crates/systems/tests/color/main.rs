@@ -3,3 +3,4 @@
 mod bad_input;
 mod standing;
 mod support;
+mod unknown_start;

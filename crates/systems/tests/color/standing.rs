@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use wayfix_scene_sim::league::LightField;
 use wayfix_sensor_log::{LogOpenOptions, Record, RecordData, Stamp};
-use wayfix_systems::color::{ColorSystemParams, priors, read_map};
+use wayfix_systems::color::{priors, read_map};
 
 use crate::bad_input::standing;
 use crate::support::{Judged, drive, hall, localize, localize_with, n_wrongly_tracked, table};
@@ -71,6 +71,6 @@ fn recorded_robot_that_stands_does_not_drift() {
         let log = wayfix_sensor_log::open(field(bag).expect("as the map"), &LogOpenOptions::default());
         let (records, _) = log.expect("a bag").read_all();
         let records = repeated(&records, 5);
-        check(bag, &localize_with(&records, map.clone(), &priors, &ColorSystemParams::default()));
+        check(bag, &localize_with(&records, map.clone(), &priors, None));
     }
 }

@@ -15,7 +15,7 @@ use wayfix_scene_sim::{
     random::{RandomStreamPurpose, RandomStreams},
 };
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
-use wayfix_systems::color::{self, ColorSystemParams, priors};
+use wayfix_systems::color::{self, ColorSystemParams, StartPose, priors};
 
 /// Right: within 0.25 m and 6° of the truth.
 const NEAR_M: f64 = 0.25;
@@ -107,17 +107,18 @@ impl Judged {
 /// On the field of the league with the built-in priors, from near the truth.
 pub(crate) fn localize(records: &[Record]) -> Vec<Judged> {
     let map = field_map().expect("a constant map");
-    localize_with(records, map, &priors::built_in().expect("priors"), &ColorSystemParams::default())
+    localize_with(records, map, &priors::built_in().expect("priors"), None)
 }
 
 pub(crate) fn localize_with(
     records: &[Record],
     map: ColorMap,
     priors: &LightingPriors,
-    params: &ColorSystemParams,
+    start: Option<StartPose>,
 ) -> Vec<Judged> {
-    let bank = priors::bank(priors, params).expect("a bank");
-    let run = color::run(records, Arc::new(map), bank, params, None, 1, |_| {}).expect("images");
+    let params = ColorSystemParams::default();
+    let bank = priors::bank(priors, &params).expect("a bank");
+    let run = color::run(records, Arc::new(map), bank, &params, start, 1, |_| {}).expect("images");
     let judge = |(frame, pose): &(&color::ColorFrameResult, wayfix_evaluation::errors::PoseWithTruth)| {
         let off: Vector3<f64> = pose.truth.local(&pose.estimate);
         Judged {
