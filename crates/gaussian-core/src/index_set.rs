@@ -37,10 +37,10 @@ impl<T: RealField + Copy> Gaussian<DVector<T>> {
     /// $`μ_a + Σ_{ab} Σ_{bb}^{-1} (v - μ_b)`$, $`Σ_{aa} - Σ_{ab} Σ_{bb}^{-1} Σ_{ba}`$ [Bishop 2006, Eqs. 2.81-2.82]
     ///
     /// ```
-    /// use nalgebra::{Matrix2, Vector2, dvector};
+    /// use nalgebra::{Matrix2, Vector2, DVector};
     /// use wayfix_gaussian_core::Gaussian;
     /// let joint = Gaussian::new(Vector2::new(0.0, 0.0), Matrix2::new(2.0, 1.0, 1.0, 1.0))?;
-    /// let conditional = joint.to_dynamic().conditional(&[1], &dvector![3.0])?;
+    /// let conditional = joint.to_dynamic().conditional(&[1], &DVector::from_vec(vec![3.0]))?;
     /// assert_eq!((conditional.mean()[0], conditional.covariance()[(0, 0)]), (3.0, 1.0));
     /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
     /// ```

@@ -9,7 +9,7 @@ mod chains;
 mod harness;
 #[path = "jobs.rs"]
 mod jobs;
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/integration/support/mod.rs"]
 mod support;
 
 fn main() {

@@ -3,7 +3,7 @@
 //! Prints `bench<TAB>job<TAB>program<TAB>nanoseconds`. What is to be reached: 100 samples with contour and snake at 320 × 240 in 1.6e7 on two
 //! cores.
 
-#[path = "../tests/common/films.rs"]
+#[path = "../tests/integration/common/films.rs"]
 mod films;
 #[path = "../../condensation/benches/support/harness.rs"]
 mod harness;

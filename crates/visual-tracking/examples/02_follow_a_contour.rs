@@ -3,7 +3,7 @@
 //!
 //! The first contour is the true one. Overlap is the intersection of contour and target over their union, 0 where the target is lost.
 
-#[path = "../tests/common/films.rs"]
+#[path = "../tests/integration/common/films.rs"]
 mod films;
 
 use films::{Record, follow};

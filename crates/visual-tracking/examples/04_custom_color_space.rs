@@ -3,7 +3,7 @@
 //!
 //! Luma, green and orange differences of [Malvar & Sullivan 2003], each scaled to [0, 1].
 
-#[path = "../tests/common/films.rs"]
+#[path = "../tests/integration/common/films.rs"]
 mod films;
 
 use films::follow;

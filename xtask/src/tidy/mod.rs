@@ -9,6 +9,7 @@ mod folders;
 mod graph;
 mod manifest;
 mod members;
+mod modules;
 mod msrv;
 mod names;
 pub(crate) mod papers;
@@ -70,6 +71,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(purity::check(&sources));
     findings.extend(direction::check(&sources));
     findings.extend(members::check(&sources));
+    findings.extend(modules::check(&sources));
     findings.extend(graph::check(&sources, &tree));
     findings.extend(text::leftovers::check(&sources));
     findings.extend(text::links::check(&sources, &paths));

@@ -125,7 +125,7 @@ where
 mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
-    use nalgebra::{Vector1, Vector2, dvector};
+    use nalgebra::{DVector, Vector1, Vector2};
     use wayfix_estimation_traits::{Angle, Pose2};
 
     #[test]
@@ -158,7 +158,10 @@ mod tests {
         assert!(weighted_mean(&zero, &[1.0, 2.0]).is_err());
         assert!(weighted_mean(&zero, &[f64::NAN]).is_err());
         assert!(weighted_mean(&[Vector1::new(f64::NAN)], &[1.0]).is_err());
-        assert!(weighted_mean(&[dvector![1.0], dvector![1.0, 2.0]], &[1.0, 1.0]).is_err());
+        assert!(
+            weighted_mean(&[DVector::from_vec(vec![1.0]), DVector::from_vec(vec![1.0, 2.0])], &[1.0, 1.0])
+                .is_err()
+        );
     }
 
     #[test]

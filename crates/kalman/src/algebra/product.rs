@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// How many of 2000 predictions and of 2000 corrections of a diffuse prior by a nearly perfect sensor (`tests/breakdown.rs`) are refused.
+    /// How many of 2000 predictions and of 2000 corrections of a diffuse prior by a nearly perfect sensor (`tests/integration/breakdown.rs`) are refused.
     fn refused<T: RealField + Copy>(
         form: impl Fn(&Matrix4<T>, &SMatrix<T, 4, 2>, &SMatrix<T, 4, 2>, &Matrix2x4<T>, &Matrix2<T>) -> Matrix4<T>,
     ) -> [usize; 2] {

@@ -6,7 +6,7 @@ mod chains;
 mod harness;
 #[path = "../../benches/jobs.rs"]
 mod jobs;
-#[path = "../../tests/support/mod.rs"]
+#[path = "../../tests/integration/support/mod.rs"]
 mod support;
 
 use chains::Case;

@@ -12,7 +12,7 @@ const MAX_PIXELS: u64 = 64 << 20;
 /// Allocation limit of a decoder: the deepest pixels, four channels of two bytes, and an equal working buffer.
 const MAX_BYTES: u64 = 2 * 8 * MAX_PIXELS;
 
-/// Decoding gives equal pixels with AVX2 and without vector instructions (`tests/image_portability.rs`; Neon is not measured yet). Images are
+/// Decoding gives equal pixels with AVX2 and without vector instructions (`tests/integration/image_portability.rs`; Neon is not measured yet). Images are
 /// rotated by their EXIF orientation. A JPEG without Huffman tables, as from webcams, gets those of the standard.
 impl EncodedImage {
     /// Columns and rows of the upright image, from the header; no pixel is decoded.
