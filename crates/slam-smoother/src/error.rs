@@ -26,6 +26,12 @@ pub enum SlamSmootherError {
         /// Number of poses.
         n_poses: usize,
     },
+    /// A landmark that is not in the map.
+    #[error("landmark {landmark} is not in the map of the smoother")]
+    UnknownLandmark {
+        /// Its identity.
+        landmark: u32,
+    },
     /// No beacon has a place: there are too few ranges, or they leave two places each.
     #[error(
         "none of {n_beacons} beacons can be placed by {n_ranges} ranges: the path must turn, and a beacon needs at least {min_ranges} ranges"

@@ -1,4 +1,4 @@
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::{
     SmootherError, Variable, VariableId,
@@ -22,6 +22,20 @@ pub(crate) fn at_present(graph: &mut Graph) -> Result<Marginals<'_>, SmootherErr
         structure.linearize(graph, &graph.values, 1.0).and_then(|_| unconstrained::check(&mut structure));
     let structure = graph.structure.insert(structure);
     result.map(|()| Marginals { structure })
+}
+
+/// Mean and covariance of variables in the tangent spaces at the present values; nothing is kept for later.
+pub(crate) fn gaussian(
+    graph: &Graph,
+    variables: &[usize],
+) -> Result<(DVector<f64>, DMatrix<f64>), SmootherError> {
+    let mut structure = Structure::new(graph)?;
+    structure.linearize(graph, &graph.values, 1.0)?;
+    unconstrained::check(&mut structure)?;
+    let step = structure.solve()?;
+    let marginals = Marginals { structure: &structure };
+    let mean = marginals.coordinates(variables)?.into_iter().map(|row| row.map_or(0.0, |row| step[row]));
+    Ok((DVector::from_vec(mean.collect()), marginals.joint(variables)?))
 }
 
 impl Marginals<'_> {

@@ -166,6 +166,13 @@ fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<DMatrix<f64>, Sla
     Ok(joint)
 }
 
+impl<R, L> SlamSnapshot<R, L> {
+    /// Replaces the joint covariance by another, robot first, of which the lower triangle counts.
+    pub fn set_covariance(&mut self, joint: &DMatrix<f64>) {
+        self.covariance = lower(joint);
+    }
+}
+
 /// The lower triangle, column by column.
 fn lower(covariance: &DMatrix<f64>) -> Vec<f64> {
     let n = covariance.nrows();

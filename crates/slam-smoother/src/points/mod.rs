@@ -1,10 +1,12 @@
 //! Points seen in range and bearing, with given pairings, in a window of time or in one batch.
 
 mod export;
+mod gaussian;
 mod params;
 mod residuals;
 mod smoother;
 
-pub use params::{PointSmootherParams, PoseObservation, SettledPose, StartPose};
+pub use gaussian::PointMapGaussian;
+pub use params::{PointSmootherParams, PoseObservation, SettledPose};
 pub use residuals::{AntennaPosition, Heading, MountedRangeBearing};
 pub use smoother::{Detection, PointSmoother};

@@ -12,17 +12,6 @@ pub struct PointSmootherParams {
     pub mount: Pose2<f64>,
 }
 
-/// Where the robot starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StartPose {
-    /// The pose.
-    pub pose: Pose2<f64>,
-    /// Its covariance in the body frame; zero for an exact one.
-    pub covariance: Matrix3<f64>,
-    /// Standard deviation of the logarithm of the range scale; zero for an exact sensor.
-    pub log_range_scale_sigma: f64,
-}
-
 /// A measurement of the pose by a sensor that does not use the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PoseObservation {

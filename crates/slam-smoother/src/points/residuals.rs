@@ -100,16 +100,3 @@ impl Residual for SamePoint {
         (Matrix2::identity(), -Matrix2::identity())
     }
 }
-
-/// The logarithm of the range scale is about zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ScalePrior;
-
-impl Residual for ScalePrior {
-    type Dim = Const<1>;
-    type Variables = (Vector1<f64>,);
-
-    fn value(&self, (log_scale,): (&Vector1<f64>,)) -> Vector1<f64> {
-        *log_scale
-    }
-}

@@ -1,13 +1,12 @@
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, VariableId};
+use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, Variable, VariableId};
 
 use super::{
-    AntennaPosition, Heading, MountedRangeBearing, PointSmootherParams, PoseObservation, SettledPose,
-    StartPose,
-    residuals::{SamePoint, ScalePrior},
+    AntennaPosition, Heading, MountedRangeBearing, PointMapGaussian, PointSmootherParams, PoseObservation,
+    SettledPose, residuals::SamePoint,
 };
 use crate::SlamSmootherError;
 
@@ -36,6 +35,7 @@ pub struct PointSmoother {
     n_poses: usize,
     solved_at: Option<f64>,
     pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
+    anchors: BTreeSet<u32>,
 }
 
 #[derive(Clone, Copy)]
@@ -49,7 +49,7 @@ pub(super) struct Frame {
 /// 95 % of the efficiency of least squares when there are no outliers.
 const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 /// What a motion is uncertain by at least, m and rad: motion models with fewer directions than three are singular.
-const LEAST_MOTION_SIGMA: [f64; 3] = [1e-4, 1e-4, 1e-5];
+pub(super) const LEAST_MOTION_SIGMA: [f64; 3] = [1e-4, 1e-4, 1e-5];
 /// Two landmarks that are one are together to within this, m.
 const SAME: f64 = 1e-3;
 /// Online, a step follows a problem that was at its minimum: few iterations are left.
@@ -61,35 +61,36 @@ const ONLINE: Params = Params {
 };
 
 impl PointSmoother {
-    /// A robot in an empty map.
+    /// Starts from a Gaussian.
     ///
     /// # Errors
-    /// [`SlamSmootherError::Smoother`] for a covariance that is none.
-    pub fn new(params: PointSmootherParams, start: &StartPose) -> Result<Self, SlamSmootherError> {
+    /// [`SlamSmootherError::OutOfRange`] for a covariance of another size or that is none, and for numbers that are not finite.
+    pub fn new(params: PointSmootherParams, start: &PointMapGaussian) -> Result<Self, SlamSmootherError> {
+        start.check()?;
         let mut graph = Graph::new();
         let pose = graph.add_variable(start.pose);
-        match start.covariance.try_inverse().filter(|_| start.covariance.amax() > 0.0) {
-            Some(information) => {
-                graph.add(Prior::new(start.pose), (pose,), information)?;
-            }
-            None => graph.fix(pose)?,
+        let scale = graph.add_variable(Vector1::new(start.log_range_scale));
+        let place = |(id, place): &(u32, Vector2<f64>)| (*id, graph.add_variable(*place));
+        let landmarks: Vec<_> = start.landmarks.iter().map(place).collect();
+        let (mut uncertain, mut blocks) = (Vec::new(), start.blocks());
+        hold_if_exact(&mut graph, pose, start, blocks.next(), &mut uncertain)?;
+        hold_if_exact(&mut graph, scale, start, blocks.next(), &mut uncertain)?;
+        for (_, landmark) in &landmarks {
+            hold_if_exact(&mut graph, *landmark, start, blocks.next(), &mut uncertain)?;
         }
-        let scale = graph.add_variable(Vector1::zeros());
-        if start.log_range_scale_sigma > 0.0 {
-            graph.add(ScalePrior, (scale,), Matrix1::new(start.log_range_scale_sigma.powi(-2)))?;
-        } else {
-            graph.fix(scale)?;
+        if !uncertain.is_empty() {
+            graph.add_gaussian(&uncertain, start.information()?)?;
         }
-        let first = Frame { number: 0, seconds: None, pose };
         Ok(Self {
             solved_at: None,
             params,
-            log_range_scale_sigma: start.log_range_scale_sigma,
+            log_range_scale_sigma: start.covariance[(3, 3)].sqrt(),
             graph,
             scale,
-            window: VecDeque::from([first]),
+            window: VecDeque::from([Frame { number: 0, seconds: None, pose }]),
             n_poses: 1,
-            landmarks: BTreeMap::new(),
+            landmarks: landmarks.into_iter().collect(),
+            anchors: BTreeSet::new(),
         })
     }
 
@@ -132,15 +133,17 @@ impl PointSmoother {
         Ok(number)
     }
 
-    /// Holds a landmark at a place that is known.
+    /// Holds a landmark at a place that is known from now on; an anchor stays where it is.
     ///
     /// # Errors
     /// Never while the smoother is whole.
     pub fn add_anchor(&mut self, landmark: u32, place: Vector2<f64>) -> Result<(), SlamSmootherError> {
-        let id = self.graph.add_variable(place);
-        self.graph.fix(id)?;
-        self.landmarks.insert(landmark, id);
-        Ok(())
+        if !self.anchors.insert(landmark) {
+            return Ok(());
+        }
+        let id = *self.landmarks.entry(landmark).or_insert_with(|| self.graph.add_variable(place));
+        self.graph.set_value(id, place)?;
+        Ok(self.graph.fix(id)?)
     }
 
     /// Adds a detection from the newest pose. An unknown landmark starts where it is seen.
@@ -219,6 +222,7 @@ impl PointSmoother {
         if let Some(id) = self.landmarks.get(&landmark).copied() {
             self.graph.remove_variables(&[id.index()])?;
             self.landmarks.remove(&landmark);
+            self.anchors.remove(&landmark);
         }
         Ok(())
     }
@@ -315,9 +319,25 @@ impl PointSmoother {
         Ok(settled)
     }
 
-    fn last(&self) -> Frame {
+    pub(super) fn last(&self) -> Frame {
         self.window[self.window.len() - 1]
     }
+}
+
+/// Fixes a variable whose block of the covariance is zero, or lists its number.
+fn hold_if_exact<X: Variable>(
+    graph: &mut Graph,
+    variable: VariableId<X>,
+    start: &PointMapGaussian,
+    block: Option<(usize, usize)>,
+    uncertain: &mut Vec<usize>,
+) -> Result<(), SlamSmootherError> {
+    if block.is_some_and(|block| start.is_exact(block)) {
+        graph.fix(variable)?;
+    } else {
+        uncertain.push(variable.index());
+    }
+    Ok(())
 }
 
 fn inverse<const N: usize>(

@@ -8,14 +8,14 @@
 )]
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
-use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_slam_smoother::points::{
-    AntennaPosition, Detection, Heading, MountedRangeBearing, PointSmoother, PointSmootherParams,
-    PoseObservation, SettledPose, StartPose,
+    AntennaPosition, Detection, Heading, MountedRangeBearing, PointMapGaussian, PointSmoother,
+    PointSmootherParams, PoseObservation, SettledPose,
 };
 use wayfix_smoother::laws;
 
@@ -26,8 +26,8 @@ fn params(lag: Option<f64>) -> PointSmootherParams {
     PointSmootherParams { lag, period: 1.0, mount: Pose2::new(x, y, heading) }
 }
 
-fn start() -> StartPose {
-    StartPose { pose: Pose2::identity(), covariance: Matrix3::zeros(), log_range_scale_sigma: 0.03 }
+fn start() -> PointMapGaussian {
+    PointMapGaussian::without_landmarks(Pose2::identity(), &Matrix3::zeros(), 0.03)
 }
 
 struct Step {
@@ -69,14 +69,92 @@ fn run(lag: Option<f64>, steps: &[Step]) -> (PointSmoother, Vec<SettledPose>) {
     let mut smoother = PointSmoother::new(params(lag), &start()).unwrap();
     let mut settled = Vec::new();
     for (k, step) in steps.iter().enumerate() {
-        smoother.advance(step.motion, &noise(), None).unwrap();
-        for (landmark, detection) in &step.seen {
-            smoother.detect(*landmark, detection).unwrap();
-        }
-        settled.extend(smoother.step(k as f64).unwrap());
+        settled.extend(take(&mut smoother, k, step));
     }
     settled.extend(smoother.finish().unwrap());
     (smoother, settled)
+}
+
+fn take(smoother: &mut PointSmoother, k: usize, step: &Step) -> Vec<SettledPose> {
+    smoother.advance(step.motion, &noise(), None).unwrap();
+    for (landmark, detection) in &step.seen {
+        smoother.detect(*landmark, detection).unwrap();
+    }
+    smoother.step(k as f64).unwrap()
+}
+
+fn gaussian(smoother: &PointSmoother) -> PointMapGaussian {
+    let (landmarks, still) = (smoother.landmarks().into_keys(), Matrix3::zeros());
+    smoother.gaussian(landmarks, &Pose2::identity(), &still).unwrap()
+}
+
+#[test]
+fn smoother_goes_on_from_the_gaussian_of_its_window() {
+    let (steps, _) = steps(80);
+    let (mut whole, mut resumed) = (PointSmoother::new(params(Some(10.0)), &start()).unwrap(), None);
+    let (mut expected, mut found) = (Vec::new(), Vec::new());
+    for (k, step) in steps.iter().enumerate() {
+        if k == 40 {
+            let saved = gaussian(&whole);
+            let from_saved = PointSmoother::new(params(Some(10.0)), &saved).unwrap();
+            let again = gaussian(&from_saved);
+            assert!(again.pose.local(&saved.pose).norm() < 1e-9 && again.landmarks.len() == 8);
+            // The pose of a map is uncertain by 1e-4 m and 1e-5 rad at least.
+            assert_abs_diff_eq!(again.covariance, saved.covariance, epsilon = 1e-7);
+            resumed = Some(from_saved);
+        }
+        expected.extend(take(&mut whole, k, step));
+        found.extend(resumed.as_mut().map(|resumed| take(resumed, k, step)).unwrap_or_default());
+    }
+    let mut resumed = resumed.unwrap();
+    expected.extend(whole.finish().unwrap());
+    found.extend(resumed.finish().unwrap());
+    // Pose 0 of the resumed one is pose 40. Only the linearization of the saved window differs; a tenth of σ makes an error larger by 1 %.
+    assert_eq!(found.len(), 41);
+    let squared = |found: &SettledPose| {
+        let expected = &expected[found.number + 40];
+        let difference = found.pose.local(&expected.pose);
+        difference.dot(&expected.covariance.cholesky().unwrap().solve(&difference))
+    };
+    let mean = found.iter().map(squared).sum::<f64>() / 41.0;
+    assert!(mean < 3.0 * 0.1_f64.powi(2), "{mean}");
+}
+
+#[test]
+fn gaussian_of_a_later_robot_has_the_noise_of_its_motion() {
+    let smoother = PointSmoother::new(params(None), &start()).unwrap();
+    let motion = Pose2::new(1.0, 0.5, 0.2);
+    let moved = smoother.gaussian([], &motion, &noise()).unwrap();
+    assert_eq!(moved.pose, motion);
+    // The start is exact.
+    let expected = PointMapGaussian::without_landmarks(motion, &noise(), 0.03);
+    assert_abs_diff_eq!(moved.covariance, expected.covariance, epsilon = 1e-12);
+    assert!(smoother.gaussian([3], &motion, &noise()).is_err());
+    let exact = PointMapGaussian::without_landmarks(motion, &Matrix3::zeros(), 0.0);
+    let smoother = PointSmoother::new(params(None), &exact).unwrap();
+    assert_eq!(smoother.gaussian([], &Pose2::identity(), &Matrix3::zeros()).unwrap(), exact);
+}
+
+#[test]
+fn start_that_is_no_gaussian_is_refused() {
+    let good = PointMapGaussian {
+        landmarks: vec![(4, Vector2::new(1.0, 2.0))],
+        covariance: DMatrix::identity(6, 6) * 0.01,
+        ..start()
+    };
+    assert!(PointSmoother::new(params(None), &good).unwrap().contains(4));
+    let with = |row: usize, column: usize, entry: f64| {
+        let mut bad = good.clone();
+        bad.covariance[(row, column)] = entry;
+        bad.covariance[(column, row)] = entry;
+        bad
+    };
+    let mut small = good.clone();
+    small.covariance = DMatrix::identity(4, 4);
+    let nowhere = PointMapGaussian { pose: Pose2::new(f64::NAN, 0.0, 0.0), ..good.clone() };
+    for bad in [with(0, 1, 0.02), with(2, 2, -1.0), with(4, 4, f64::NAN), small, nowhere] {
+        assert!(PointSmoother::new(params(None), &bad).is_err(), "{}", bad.covariance);
+    }
 }
 
 #[test]
@@ -196,7 +274,7 @@ fn merged_landmarks_are_one() {
 fn external_measurements_and_anchors_tie_the_map() {
     let mut smoother = PointSmoother::new(
         params(Some(10.0)),
-        &StartPose { covariance: Matrix3::identity() * 4.0, ..start() },
+        &PointMapGaussian::without_landmarks(Pose2::identity(), &(Matrix3::identity() * 4.0), 0.03),
     )
     .unwrap();
     let there = Pose2::new(3.0, 1.0, 0.5);
@@ -228,6 +306,14 @@ fn external_measurements_and_anchors_tie_the_map() {
     smoother.detect(7, &detection).unwrap();
     smoother.finish().unwrap();
     assert_eq!(smoother.landmarks()[&7], Vector2::new(5.0, 5.0));
+    // A landmark that becomes an anchor stays, with all that was seen of it; an anchor stays an anchor.
+    smoother.detect(8, &detection).unwrap();
+    smoother.add_anchor(8, Vector2::new(5.0, 5.1)).unwrap();
+    smoother.add_anchor(7, Vector2::zeros()).unwrap();
+    let n_residuals = smoother.size().1;
+    smoother.finish().unwrap();
+    assert_eq!(smoother.landmarks(), [(7, Vector2::new(5.0, 5.0)), (8, Vector2::new(5.0, 5.1))].into());
+    assert_eq!(smoother.size().1, n_residuals);
 }
 
 #[test]

@@ -66,5 +66,6 @@ pub(super) fn minimize(
         }
     }
     graph.values = values;
-    Ok(Summary { start_cost, cost, iterations, stop })
+    let factorization_flop = structure.cholesky.flop();
+    Ok(Summary { start_cost, cost, iterations, stop, factorization_flop })
 }

@@ -61,4 +61,6 @@ pub struct Summary {
     pub iterations: usize,
     /// Why it ended.
     pub stop: Stop,
+    /// Additions and multiplications of one numeric factorization: $`\sum_k c_k^2`$ with $`c_k`$ entries in column k of the Cholesky factor.
+    pub factorization_flop: f64,
 }

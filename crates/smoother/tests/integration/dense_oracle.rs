@@ -174,3 +174,24 @@ impl<const R: usize, const C: usize> AsDynamic for nalgebra::SMatrix<f64, R, C> 
         DMatrix::from_column_slice(R, C, self.as_slice())
     }
 }
+
+/// A dense factorization of n rows: column k has n - k entries below the diagonal and on it, whatever the order.
+#[test]
+fn flop_of_a_full_graph_is_that_of_a_dense_matrix() {
+    for n_poses in [3, 40] {
+        let mut graph = Graph::new();
+        let poses: Vec<_> =
+            (0..n_poses).map(|k| graph.add_variable(Pose2::new(f64::from(k), 0.0, 0.0))).collect();
+        graph.fix(poses[0]).unwrap();
+        for (i, from) in poses.iter().enumerate() {
+            for (k, to) in poses.iter().enumerate().skip(i + 1) {
+                let residual = Between::new(Pose2::new((k - i) as f64, 0.0, 0.0));
+                graph.add(residual, (*from, *to), Matrix3::identity()).unwrap();
+            }
+        }
+        let n = 3 * (n_poses as usize - 1);
+        let dense: usize = (1..=n).map(|entries| entries * entries).sum();
+        let summary = graph.optimize(&Params::default()).unwrap();
+        assert_eq!(summary.factorization_flop, dense as f64, "{n_poses}");
+    }
+}

@@ -9,8 +9,8 @@
 
 use crate::common::world;
 use approx::{abs_diff_eq, assert_abs_diff_eq};
-use nalgebra::{Const, Matrix2, Vector2};
-use wayfix_estimation_traits::Manifold;
+use nalgebra::{Const, DMatrix, Matrix2, Vector2};
+use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_smoother::{Graph, Kernel, Method, Params, Residual, SmootherError, VariableId};
 
 const EXACT: Params = Params {
@@ -153,4 +153,45 @@ fn undetermined_variable_is_refused_and_nothing_changes() {
     let error = graph.marginalize(&[a.index()]).unwrap_err();
     assert!(matches!(error, SmootherError::IllConditioned { smallest: 0.0, .. }), "{error}");
     assert_eq!((graph.n_variables(), graph.n_residuals()), (2, 1));
+}
+
+#[test]
+fn gaussian_is_what_a_marginalization_leaves() {
+    let mut world = world(5, 20, true);
+    let kept = [world.poses[19].index(), world.landmarks[1].index(), world.landmarks[2].index()];
+    let (mean, covariance) = world.graph.gaussian(&kept).unwrap();
+    let cost = world.graph.cost();
+    let dropped: Vec<usize> =
+        (0..world.graph.n_variables()).filter(|variable| !kept.contains(variable)).collect();
+    world.graph.marginalize(&dropped).unwrap();
+    let (mean_after, covariance_after) = world.graph.gaussian(&kept).unwrap();
+    assert!(cost > 0.0 && mean.norm() > 1e-3);
+    assert_abs_diff_eq!(mean, mean_after, epsilon = 1e-9);
+    assert_abs_diff_eq!(covariance, covariance_after, epsilon = 1e-9);
+}
+
+#[test]
+fn gaussian_that_is_added_is_there() {
+    let mut graph = Graph::new();
+    let (pose, point) = (graph.add_variable(Pose2::new(1.0, 2.0, 3.0)), graph.add_variable(Vector2::x()));
+    let numbers = [point.index(), pose.index()];
+    let information = DMatrix::from_fn(5, 5, |i, k| if i == k { 4.0 } else { 1.0 / (1.0 + (i + k) as f64) });
+    graph.add_gaussian(&numbers, information.clone()).unwrap();
+    let (mean, covariance) = graph.gaussian(&numbers).unwrap();
+    assert_eq!(mean.norm(), 0.0);
+    assert_abs_diff_eq!(covariance * &information, DMatrix::identity(5, 5), epsilon = 1e-12);
+    let mut asymmetric = information.clone();
+    asymmetric[(0, 1)] = 0.0;
+    for (numbers, information) in [
+        (vec![0, 7], information.clone()),
+        (vec![1, 1], DMatrix::identity(4, 4)),
+        (vec![1], information.clone()),
+        (numbers.to_vec(), asymmetric),
+        (numbers.to_vec(), -information),
+        (vec![1], DMatrix::identity(2, 2) * f64::NAN),
+    ] {
+        assert!(graph.add_gaussian(&numbers, information).is_err(), "{numbers:?}");
+        assert_eq!(graph.n_residuals(), 1);
+    }
+    assert_eq!(graph.gaussian(&[7]), Err(SmootherError::UnknownId));
 }

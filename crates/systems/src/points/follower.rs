@@ -1,18 +1,18 @@
 use std::{collections::BTreeMap, time::Duration};
 
-use nalgebra::{Matrix3, Matrix4};
+use nalgebra::{Matrix3, Matrix4, Vector2};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
-    RangeBearing, SlamError, UpdateReport,
+    EkfSlam, LandmarkId, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
+    RangeBearing, SlamError, SlamSnapshot, UpdateReport,
 };
 use wayfix_slam_smoother::{
     SlamSmootherError,
-    points::{Detection, PointSmoother, PointSmootherParams, PoseObservation, SettledPose, StartPose},
+    points::{Detection, PointMapGaussian, PointSmoother, PointSmootherParams, PoseObservation, SettledPose},
 };
 
-use super::{MountingParams, PointSensor, PointSlamParams};
+use super::{PointSensor, PointSlamParams};
 use crate::{
     slam::{SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried},
     system::{MOST_ESTIMATES, Stopwatch},
@@ -33,7 +33,6 @@ pub(super) struct PointFollower {
     /// Motion since the newest pose of the smoother, with covariance.
     motion: Pose2<f64>,
     covariance: Matrix3<f64>,
-    has_anchors: bool,
     waiting: BTreeMap<usize, Vec<Waiting>>,
     estimates: Decimated<StampedEstimate>,
     failure: Option<String>,
@@ -47,34 +46,33 @@ struct Waiting {
 }
 
 impl PointFollower {
-    /// The follower that the parameters ask for.
+    /// The follower that the parameters ask for; it starts from the state of a filter.
     pub(super) fn wanted(
         params: &PointSlamParams,
-        start: Pose2<f64>,
-        start_covariance: &Matrix3<f64>,
+        filter: &EkfSlam<PointSensor>,
     ) -> Result<Option<Box<dyn SlamFollower<PointSensor>>>, SlamError> {
         let is_batch = match params.smoothing {
             Smoothing::Off => return Ok(None),
             Smoothing::Reference => true,
             Smoothing::FixedLag => false,
         };
-        let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
-        let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
-        let start = StartPose {
-            pose: start,
-            covariance: *start_covariance,
-            log_range_scale_sigma: params.robot.range_scale_sigma,
+        let SlamSnapshot { robot, landmarks, .. } = filter.snapshot();
+        let start = PointMapGaussian {
+            pose: robot.pose,
+            log_range_scale: robot.log_range_scale,
+            landmarks: landmarks.into_iter().map(|landmark| (landmark.id.0, landmark.mean)).collect(),
+            covariance: filter.covariance(),
         };
+        let mount = filter.model().0.mount;
         let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), period: PERIOD, mount };
-        let smoother = PointSmoother::new(smoother_params, &start);
-        let smoother = smoother.map_err(|_| SlamError::NotFinite { what: "start covariance" })?;
+        let (what, value, asymmetry) = ("start of the smoother", start.covariance.diagonal().min(), 0.0);
+        let singular = |_| SlamError::NotACovariance { what, value, asymmetry };
         Ok(Some(Box::new(Self {
-            smoother,
+            smoother: PointSmoother::new(smoother_params, &start).map_err(singular)?,
             is_batch,
             is_graph_recorded: params.record_graph,
             motion: Pose2::identity(),
             covariance: Matrix3::zeros(),
-            has_anchors: false,
             waiting: BTreeMap::new(),
             estimates: Decimated::new(MOST_ESTIMATES),
             failure: None,
@@ -114,11 +112,6 @@ impl PointFollower {
         observations: &[Observation<RangeBearing>],
         report: &UpdateReport<RangeBearing>,
     ) -> Result<(), SlamSmootherError> {
-        if !std::mem::replace(&mut self.has_anchors, true) {
-            for (id, place) in filter.anchors() {
-                self.smoother.add_anchor(id.0, *place)?;
-            }
-        }
         self.advance(filter)?;
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
             let landmark = match outcome {
@@ -136,8 +129,11 @@ impl PointFollower {
         for merge in &report.merges {
             self.smoother.merge(merge.kept.0, merge.removed.0)?;
         }
+        for (id, place) in filter.anchors() {
+            self.smoother.add_anchor(id.0, *place)?;
+        }
         let gone: Vec<u32> = self.smoother.landmarks().into_keys().collect();
-        for landmark in gone.into_iter().filter(|id| !filter.contains(wayfix_slam_ekf::LandmarkId(*id))) {
+        for landmark in gone.into_iter().filter(|id| !filter.contains(LandmarkId(*id))) {
             self.smoother.remove(landmark)?;
         }
         Ok(())
@@ -210,6 +206,19 @@ impl SlamFollower<PointSensor> for PointFollower {
             self.settle(&settled);
         }
         step
+    }
+
+    fn save(&self, filter: &EkfSlam<PointSensor>) -> Option<SlamSnapshot<PoseWithRangeScale, Vector2<f64>>> {
+        let mut saved = filter.snapshot();
+        let ids = saved.landmarks.iter().map(|landmark| landmark.id.0);
+        let is_whole = !self.is_batch && self.failure.is_none();
+        let window = is_whole.then(|| self.smoother.gaussian(ids, &self.motion, &self.covariance))?.ok()?;
+        saved.robot = PoseWithRangeScale { pose: window.pose, log_range_scale: window.log_range_scale };
+        for (landmark, (_, place)) in saved.landmarks.iter_mut().zip(window.landmarks) {
+            landmark.mean = place;
+        }
+        saved.set_covariance(&window.covariance);
+        Some(saved)
     }
 
     fn finish(&mut self) -> Result<SmoothedRun, String> {

@@ -6,7 +6,7 @@ use wayfix_sensor_log::{
 use wayfix_slam_ekf::{
     EkfSlam, ExternalParams, LandmarkId, MotionWithRangeScale, MountedSensor, Observation,
     PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, SequentialMotion,
-    SlamError, SlamParams, UnknownMotion,
+    SlamError, SlamParams, SlamSnapshot, UnknownMotion,
 };
 
 use super::{
@@ -66,8 +66,7 @@ impl PointSystem {
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
-        let mut estimator = SlamEstimator::new(filter, association, params.record_observability, start);
-        estimator.follower = PointFollower::wanted(&params, start, start_covariance)?;
+        let estimator = SlamEstimator::new(filter, association, params.record_observability, start);
         let front_end = PointSlamFrontEnd {
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
@@ -79,6 +78,16 @@ impl PointSystem {
         Ok(Self::new(front_end, estimator))
     }
 
+    /// Lets a smoother follow, if the parameters ask for one: from what an earlier one has saved, else from the state of the filter.
+    pub(super) fn follow(&mut self, saved: Option<SavedPoints>) -> Result<(), SlamError> {
+        let filter = &self.estimator.filter;
+        let resume = |saved| EkfSlam::resume(*filter.model(), *filter.params(), saved);
+        let saved = saved.map(resume).transpose()?;
+        let start = saved.as_ref().unwrap_or(filter);
+        self.estimator.follower = PointFollower::wanted(&self.front_end.params, start)?;
+        Ok(())
+    }
+
     /// Where the antenna is when the robot is at `pose`.
     pub fn antenna(&self, pose: &Pose2<f64>) -> Vector2<f64> {
         pose.transform(&self.front_end.external().1)
@@ -86,6 +95,7 @@ impl PointSystem {
 }
 
 type Points = SlamEstimator<PointSensor>;
+type SavedPoints = SlamSnapshot<PoseWithRangeScale, Vector2<f64>>;
 
 impl FrontEnd for PointSlamFrontEnd {
     type Model = PointSensor;

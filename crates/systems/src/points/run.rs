@@ -57,17 +57,11 @@ pub fn run_streamed<R: Borrow<Record>>(
         |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
     let known = TrueStartPose::at(start_stamp, &truth, overview).filter(|_| params.start_pose.is_none());
     let start = if params.start_pose.is_none() && known.is_none() {
-        let mut pilot = from(Pose2::new(0.0, 0.0, 0.0))?;
-        pilot.estimator.follower = None;
-        fitted_start(pilot, overview, &true_positions)
+        fitted_start(from(Pose2::new(0.0, 0.0, 0.0))?, overview, &true_positions)
     } else {
         start_pose(params.start_pose, known)
     };
     let mut system = from(start)?;
-    let has_truth = !truth.is_empty() || true_positions.last_stamp().is_some();
-    if params.smoothing == Smoothing::Reference && !has_truth && !params.record_graph {
-        system.estimator.follower = None; // nothing to compare the batch with
-    }
     if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &truth);
     }
@@ -76,6 +70,10 @@ pub fn run_streamed<R: Borrow<Record>>(
     }
     let seen = (association == AssociationRule::Known).then(|| identities(overview));
     system.add_given_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
+    let has_truth = !truth.is_empty() || true_positions.last_stamp().is_some();
+    if params.smoothing == Smoothing::FixedLag || has_truth || params.record_graph {
+        system.follow(None)?; // else there is nothing to compare a batch with
+    }
     drive_through(system, truth, overview, records, observe)
 }
 

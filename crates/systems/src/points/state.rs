@@ -5,7 +5,7 @@ use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem};
 use crate::{
-    slam::{FrontEndState, SavedMapError, SlamState, check_association},
+    slam::{FrontEndState, SavedMapError, SlamState, Smoothing, check_association},
     system::{MotionStatistics, check_velocity},
 };
 
@@ -72,14 +72,21 @@ impl PointSystem {
     /// # Errors
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(params: PointSlamParams, saved: SavedPointMap) -> Result<Self, SavedMapError> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, external, front_end } =
-            saved;
+        let SlamState {
+            filter,
+            smoothed,
+            association,
+            next_id,
+            taken_until,
+            dead_reckoning,
+            external,
+            front_end,
+        } = saved;
         let PointFrontEndState { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
         let mut system =
             Self::with_points(params, association, stamp(time), dead_reckoning, &Matrix3::zeros())?;
-        system.estimator.follower = None; // it does not know the map
         for (nanoseconds, linear, angular) in commands {
             let velocity = Velocity { linear, angular };
             let impossible = |_| SlamError::NotFinite { what: "saved command" };
@@ -90,6 +97,16 @@ impl PointSystem {
             return Err(SlamError::NotFinite { what: "saved motion" }.into());
         }
         (system.front_end.odometry, system.front_end.motion) = (odometry, motion);
-        system.resumed(filter, next_id, taken_until, external)
+        let mut system = system.resumed(filter, next_id, taken_until, external)?;
+        if system.front_end.params.smoothing == Smoothing::FixedLag {
+            if smoothed.is_none() {
+                system.estimator.events.warn(
+                    "smoother_starts_from_filter",
+                    "the saved map is of a filter alone: the smoother starts from its estimate",
+                );
+            }
+            system.follow(smoothed)?;
+        }
+        Ok(system)
     }
 }

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{Pose2, TangentMatrix};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim, Observation, RobotDim, SlamAlloc,
-    UpdateReport,
+    SlamSnapshot, UpdateReport,
 };
 
 use super::StampedEstimate;
@@ -28,6 +28,8 @@ where
     fn measured(&mut self, filter: &EkfSlam<M>, measurement: &MapMeasurement, motion: Pose2<f64>);
     /// The filter has an estimate at a stamp; computing time of the follower for it.
     fn estimated(&mut self, filter: &EkfSlam<M>, estimate: &StampedEstimate) -> Duration;
+    /// What it knows now of robot and map, in the form of the filter; `None` for a batch, and after a failure.
+    fn save(&self, filter: &EkfSlam<M>) -> Option<SlamSnapshot<M::Robot, M::Landmark>>;
     /// Everything, when the log has ended.
     ///
     /// # Errors

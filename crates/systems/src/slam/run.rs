@@ -60,7 +60,7 @@ where
 
     /// Takes the result of the smoother; with a fixed lag it replaces the estimates of the filter.
     fn take_smoothed(&mut self) {
-        let Some(mut follower) = self.system.estimator.follower.take() else { return };
+        let Some(follower) = &mut self.system.estimator.follower else { return };
         match follower.finish() {
             Ok(mut smoothed) => {
                 if !smoothed.is_batch {

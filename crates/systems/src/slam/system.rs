@@ -153,8 +153,10 @@ where
         let taken_until = self.front_end.settled_until(self.taken_until);
         // Later ones are read again.
         let waiting = self.waiting.iter().filter(|(stamp, _)| *stamp <= taken_until);
+        let SlamEstimator { filter, follower, .. } = &self.estimator;
         SlamState {
-            filter: self.estimator.filter.snapshot(),
+            filter: filter.snapshot(),
+            smoothed: follower.as_ref().and_then(|follower| follower.save(filter)),
             association: self.association(),
             next_id: self.estimator.association.next_id(),
             taken_until: taken_until.nanoseconds(),

@@ -115,6 +115,7 @@ impl WallSystem {
     ) -> anyhow::Result<Self> {
         let SlamState {
             filter,
+            smoothed: _,
             association,
             next_id,
             taken_until,

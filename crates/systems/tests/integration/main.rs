@@ -5,6 +5,7 @@ mod color;
 mod external_sensors;
 mod odometry_faults;
 mod pipeline;
+mod point_params;
 mod slam_system;
 mod smoother;
 mod stop;

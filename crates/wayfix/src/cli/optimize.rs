@@ -103,6 +103,7 @@ Without VERTEX lines the poses come from dead reckoning along the edges.
 Figures:
   start_cost   cost at the poses of the file      cost         cost at the end
   iterations   linearizations                     time_ms      start and optimization, without reading and building the graph
+  factorization_gflop   10⁹ additions and multiplications of the sparse Cholesky factorization in each iteration
 
 Examples:
   wayfix optimize manhattan.g2o.gz
@@ -186,6 +187,7 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
             Metric::new("cost", summary.cost, ""),
             Metric::new("start_cost", start_cost, ""),
             Metric::new("iterations", summary.iterations as f64, ""),
+            Metric::new("factorization_gflop", summary.factorization_flop * 1e-9, "GFLOP"),
             Metric::new("n_poses", file.poses.len() as f64, ""),
             Metric::new("n_landmarks", file.points.len() as f64, ""),
             Metric::new("n_edges", (file.edges.len() + file.point_edges.len()) as f64, ""),

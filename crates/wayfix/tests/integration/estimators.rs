@@ -21,8 +21,6 @@ fn run(arguments: &[&str]) -> (bool, String, String) {
 fn smoother_refuses_what_it_has_not() {
     let points = fixture("loop_known.mcap");
     for (arguments, named) in [
-        (vec!["--log", &points, "--save", "map"], "--save"),
-        (vec!["--log", &points, "--observability"], "--observability"),
         (vec!["--log", &points, "--graph-out", "graph.txt"], "--graph-out"),
         (vec!["--log", &fixture("office_laser.mcap")], "walls need --estimator ekf"),
     ] {
@@ -67,6 +65,8 @@ fn ranges_need_the_smoother_and_no_parameters() {
     let (is_success, json, error) = run(&["--log", &log, "--estimator", "smoother", "--json"]);
     assert!(is_success && json.contains("\"n_landmarks\":1"), "{json} {error}");
     assert!(error.contains("noise by the likelihood"), "{error}");
+    let (is_success, _, error) = run(&["--log", &log, "--estimator", "smoother", "--save", "map"]);
+    assert!(!is_success && error.contains("ranges are one batch"), "{error}");
     let (is_success, _, error) = run(&["--log", &log, "--format", "plaza"]);
     assert!(!is_success && error.contains("--estimator smoother"), "{error}");
     let (is_success, _, error) = run(&["--log", &log, "--estimator", "smoother", "--params", "none.toml"]);

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_systems::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
-use wayfix_systems::slam::{AssociationRule, SavedMapError};
+use wayfix_systems::slam::{AssociationRule, SavedMapError, Smoothing};
 use wayfix_systems::system::RunStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
@@ -100,6 +100,26 @@ fn the_command_saves_and_goes_on() {
 }
 
 #[test]
+fn either_estimator_goes_on_from_a_map_of_either() {
+    let scratch = Scratch::new();
+    let (first, both) = (scratch.file("first.txt", walk(40)), scratch.file("both.txt", walk(80)));
+    for (from, to) in [("smoother", "smoother"), ("smoother", "ekf"), ("ekf", "smoother")] {
+        let map = scratch.path(&format!("{from}-{to}.map")).to_str().unwrap().to_owned();
+        run_slam(&first, &["--estimator", from, "--save", &map, "--save-every", "1"]).json();
+        let resumed = run_slam(&both, &["--estimator", to, "--resume", &map, "--save", &map]);
+        assert!(resumed.event("record_before_resume") > 0 && resumed.event("observation_accepted") > 0);
+        assert_eq!(resumed.event("smoother_starts_from_filter"), u64::from(from == "ekf"));
+        let saved = SavedPointMap::read(Path::new(&map)).unwrap();
+        assert_eq!(saved.smoothed.is_some(), to == "smoother");
+        if to == "ekf" {
+            let whole = scratch.path("whole.map").to_str().unwrap().to_owned();
+            run_slam(&both, &["--save", &whole]).json();
+            assert_eq!(SavedPointMap::read(Path::new(&whole)).unwrap(), saved, "the filter is as without");
+        }
+    }
+}
+
+#[test]
 fn a_damaged_file_is_refused_with_its_reason() {
     let scratch = Scratch::new();
     let params = PointSlamParams::of(RobotProfile::RangeBearing);
@@ -120,7 +140,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
             let error = SavedPointMap::from_bytes(&damaged).unwrap_err();
             let expected = match place {
                 0..8 => matches!(error, SavedMapError::NotASavedMap),
-                8..12 => matches!(error, SavedMapError::Version { known: 4, .. }),
+                8..12 => matches!(error, SavedMapError::Version { known: 5, .. }),
                 12..20 => matches!(error, SavedMapError::Length { .. }),
                 _ => matches!(error, SavedMapError::Checksum { .. }),
             };
@@ -133,22 +153,24 @@ fn a_damaged_file_is_refused_with_its_reason() {
 #[test]
 fn a_forged_state_never_panics() {
     let scratch = Scratch::new();
-    let params = PointSlamParams::of(RobotProfile::RangeBearing);
-    let log = records(&scratch.file("walk.txt", walk(12)));
-    let bytes = run(&log, &params, |_| {}).unwrap().system.save().to_bytes().unwrap();
-    let later = records(&scratch.file("later.txt", walk(20)));
-    let mut n_refused = 0;
-    for place in 24..bytes.len() {
-        let mut forged = bytes.clone();
-        forged[place] ^= 0x80;
-        let checksum = crc32fast::hash(&[&forged[8..20], &forged[24..]].concat());
-        forged[20..24].copy_from_slice(&checksum.to_le_bytes());
-        let resumed = SavedPointMap::from_bytes(&forged)
-            .map_err(anyhow::Error::from)
-            .and_then(|map| run_on(map, &later, &later, &params, |_| {}));
-        n_refused += usize::from(resumed.is_err());
+    for smoothing in [Smoothing::Off, Smoothing::FixedLag] {
+        let params = PointSlamParams { smoothing, ..PointSlamParams::of(RobotProfile::RangeBearing) };
+        let log = records(&scratch.file("walk.txt", walk(12)));
+        let bytes = run(&log, &params, |_| {}).unwrap().system.save().to_bytes().unwrap();
+        let later = records(&scratch.file("later.txt", walk(20)));
+        let mut n_refused = 0;
+        for place in 24..bytes.len() {
+            let mut forged = bytes.clone();
+            forged[place] ^= 0x80;
+            let checksum = crc32fast::hash(&[&forged[8..20], &forged[24..]].concat());
+            forged[20..24].copy_from_slice(&checksum.to_le_bytes());
+            let resumed = SavedPointMap::from_bytes(&forged)
+                .map_err(anyhow::Error::from)
+                .and_then(|map| run_on(map, &later, &later, &params, |_| {}));
+            n_refused += usize::from(resumed.is_err());
+        }
+        assert!(n_refused > 0, "some forgeries must be found");
     }
-    assert!(n_refused > 0, "some forgeries must be found");
 }
 
 /// The process is ended by SIGKILL at a random moment of saving without a pause.

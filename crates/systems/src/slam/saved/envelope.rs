@@ -2,7 +2,7 @@ use super::SavedMapError;
 
 const MAGIC: [u8; 8] = *b"WAYFIXSM";
 /// Counts up with every change of what the payload holds.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const HEADER: usize = 24;
 
 /// The payload with a header before it that tells what it is and whether it is whole.
@@ -96,7 +96,7 @@ mod tests {
             assert!(open(&flipped).is_err(), "bit {bit}");
         }
         let mut newer = sealed;
-        newer[8] = 5;
-        assert!(matches!(open(&newer), Err(SavedMapError::Version { found: 5, known: 4 })));
+        newer[8] = 6;
+        assert!(matches!(open(&newer), Err(SavedMapError::Version { found: 6, known: 5 })));
     }
 }

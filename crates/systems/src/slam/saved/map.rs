@@ -18,6 +18,8 @@ use crate::{
 pub struct SlamState<R, L, S> {
     /// Robot, map and covariance.
     pub filter: SlamSnapshot<R, L>,
+    /// The same by the smoother that follows the filter, if one does: its window is marginalized.
+    pub smoothed: Option<SlamSnapshot<R, L>>,
     /// How observations find their landmarks.
     pub association: AssociationRule,
     /// The identity of the next new landmark; `None` where the sensor reads identities.

@@ -81,6 +81,10 @@ fn check(arguments: &run_slam::Arguments) -> Result<()> {
         arguments.common.params.is_none() && !arguments.common.print_params,
         "runs on ranges have no parameters: noise, bias and scale come from the log"
     );
+    ensure!(
+        arguments.save.is_none() && arguments.resume.is_none() && !arguments.observability,
+        "--save, --resume and --observability are for logs of range-bearing detections and of scans: ranges are one batch"
+    );
     ensure!(arguments.relations.is_none(), "--relations is for logs of scans");
     ensure!(arguments.graph_out.is_none(), "--graph-out is for logs of range-bearing detections");
     ensure!(

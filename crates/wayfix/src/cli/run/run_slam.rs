@@ -135,7 +135,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params(&arguments, RobotProfile::Generic)?)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    arguments.check_estimator()?;
+    ensure!(
+        arguments.estimator == EstimatorName::Ekf || arguments.graph_out.is_none(),
+        "--graph-out needs --estimator ekf: it writes the batch that the filter is compared with"
+    );
     if let Some(folder) = run_ranges::folder(&arguments) {
         return run_ranges::main(&arguments, folder);
     }
@@ -244,20 +247,6 @@ where
 }
 
 impl Arguments {
-    /// Refuses what the smoother cannot do.
-    fn check_estimator(&self) -> Result<()> {
-        if self.estimator == EstimatorName::Smoother {
-            ensure!(
-                self.save.is_none()
-                    && self.resume.is_none()
-                    && !self.observability
-                    && self.graph_out.is_none(),
-                "--save, --resume, --observability and --graph-out need --estimator ekf: the smoother has none of them yet"
-            );
-        }
-        Ok(())
-    }
-
     /// The map of `--resume`.
     pub(super) fn saved_map<R, L, S: FrontEndState>(&self) -> Result<Option<SlamState<R, L, S>>>
     where
