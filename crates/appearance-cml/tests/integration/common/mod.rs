@@ -9,7 +9,7 @@ use wayfix_gaussian_core::Gaussian;
 
 /// Features of a view; the heading stands for the phase of a panorama.
 #[derive(Clone, Debug)]
-pub struct FieldView {
+pub(crate) struct FieldView {
     features: Vec<f64>,
     heading: f64,
 }
@@ -25,7 +25,7 @@ impl ViewDescriptor for FieldView {
 }
 
 /// Features as sums of plane waves, alike over about half a metre and strange to one another from two on.
-pub struct Field {
+pub(crate) struct Field {
     waves: Vec<Vec<[f64; 3]>>,
 }
 
@@ -36,7 +36,7 @@ const LENGTHS: [f64; 2] = [2.0, 8.0];
 
 impl Field {
     /// A world of its own for each state of the generator.
-    pub fn new<R: Rng + ?Sized>(rng: &mut R) -> Self {
+    pub(crate) fn new<R: Rng + ?Sized>(rng: &mut R) -> Self {
         let wave = |rng: &mut R| {
             let length = LENGTHS[0] * (LENGTHS[1] / LENGTHS[0]).powf(rng.random::<f64>());
             let direction = std::f64::consts::TAU * rng.random::<f64>();
@@ -48,7 +48,7 @@ impl Field {
     }
 
     /// What is seen from a pose, with noise on each feature and 0.02 rad on the phase.
-    pub fn view<R: Rng + ?Sized>(&self, pose: &Pose2<f64>, rng: &mut R) -> FieldView {
+    pub(crate) fn view<R: Rng + ?Sized>(&self, pose: &Pose2<f64>, rng: &mut R) -> FieldView {
         let feature = |waves: &Vec<[f64; 3]>| -> f64 {
             waves.iter().map(|[kx, ky, phase]| (kx * pose.x() + ky * pose.y() + phase).sin()).sum()
         };
@@ -57,18 +57,18 @@ impl Field {
     }
 
     /// Somebody stands before the camera.
-    pub fn occluded<R: Rng + ?Sized>(&self, rng: &mut R) -> FieldView {
+    pub(crate) fn occluded<R: Rng + ?Sized>(&self, rng: &mut R) -> FieldView {
         FieldView { features: (0..FEATURES).map(|_| 2.0 * normal(rng)).collect(), heading: 0.0 }
     }
 }
 
 /// A standard normal number.
-pub fn normal<R: Rng + ?Sized>(rng: &mut R) -> f64 {
+pub(crate) fn normal<R: Rng + ?Sized>(rng: &mut R) -> f64 {
     StandardNormal.sample(rng)
 }
 
 /// What odometry says of a step: a scale and a turn that are off, and noise that grows with the way.
-pub fn drifting<R: Rng + ?Sized>(step: &Pose2<f64>, rng: &mut R) -> Pose2<f64> {
+pub(crate) fn drifting<R: Rng + ?Sized>(step: &Pose2<f64>, rng: &mut R) -> Pose2<f64> {
     let way = step.translation.norm();
     Pose2::new(
         step.x() * 1.01 + 0.01 * way.sqrt() * normal(rng),
@@ -78,15 +78,15 @@ pub fn drifting<R: Rng + ?Sized>(step: &Pose2<f64>, rng: &mut R) -> Pose2<f64> {
 }
 
 /// Steps of a way once round, about 0.26 m each.
-pub const N_STEPS: usize = 160;
+pub(crate) const N_STEPS: usize = 160;
 
 /// Where the robot is at a step when it drives so far beside the lane that was taught, m.
-pub fn beside(step: usize, offset: f64) -> Pose2<f64> {
+pub(crate) fn beside(step: usize, offset: f64) -> Pose2<f64> {
     lap(14.0, 8.0, N_STEPS)[step % N_STEPS].compose(&Pose2::new(0.0, offset, 0.0))
 }
 
 /// Poses along a closed way, a rectangle with round corners.
-pub fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
+pub(crate) fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
     let at = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / steps as f64;
         // A superellipse of third degree.
@@ -101,11 +101,11 @@ pub fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
 }
 
 /// The motion from one pose to another.
-pub fn between(from: &Pose2<f64>, to: &Pose2<f64>) -> Pose2<f64> {
+pub(crate) fn between(from: &Pose2<f64>, to: &Pose2<f64>) -> Pose2<f64> {
     from.inverse().compose(to)
 }
 
 /// A pose that was surveyed: known to 2 cm and 0.01 rad.
-pub fn known(pose: Pose2<f64>) -> Gaussian<Pose2<f64>> {
+pub(crate) fn known(pose: Pose2<f64>) -> Gaussian<Pose2<f64>> {
     Gaussian::from_sigmas(pose, &Vector3::new(0.02, 0.02, 0.01)).expect("sigmas are positive")
 }

@@ -39,10 +39,6 @@ impl Scene {
         Self { map, camera, projector }
     }
 
-    pub(crate) fn projector(&self) -> MapRenderer {
-        MapRenderer::new(Arc::clone(&self.map), self.camera)
-    }
-
     /// Labels from a camera pose, row by row; `None` beside the map.
     pub(crate) fn labels(&mut self, camera_pose: &Pose3<f64>) -> Vec<Option<ColorId>> {
         self.projector.labels(camera_pose).expect("a finite pose").pixels().to_vec()

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_smoother::{Between, Graph, RelativePosition, ResidualId, VariableId};
+use wayfix_smoother::{Between, Graph, RelativePosition, VariableId};
 
 /// A robot that goes round a square twice and sees landmarks.
 pub(crate) struct World {
@@ -13,7 +13,6 @@ pub(crate) struct World {
     pub(crate) poses: Vec<VariableId<Pose2<f64>>>,
     pub(crate) landmarks: Vec<VariableId<Vector2<f64>>>,
     pub(crate) true_poses: Vec<Pose2<f64>>,
-    pub(crate) residuals: Vec<ResidualId>,
 }
 
 /// The first pose is fixed when `is_anchored`; variables start about 0.1 from the truth.
@@ -40,18 +39,16 @@ pub(crate) fn world(seed: u64, n_poses: usize, is_anchored: bool) -> World {
         graph.set_value(poses[0], true_poses[0]).unwrap();
         graph.fix(poses[0]).unwrap();
     }
-    let mut residuals = Vec::new();
     let motion_information = Matrix3::new(400.0, 10.0, 0.0, 10.0, 400.0, 5.0, 0.0, 5.0, 1600.0);
     for i in 1..n_poses {
         let motion = step(i).retract(&Vector3::new(noise(0.05), noise(0.05), noise(0.02)));
-        residuals
-            .push(graph.add(Between::new(motion), (poses[i - 1], poses[i]), motion_information).unwrap());
+        graph.add(Between::new(motion), (poses[i - 1], poses[i]), motion_information).unwrap();
     }
     for (i, pose) in true_poses.iter().enumerate() {
         let k = i % true_landmarks.len();
         let measured = pose.inverse_transform(&true_landmarks[k]) + Vector2::new(noise(0.1), noise(0.1));
         let seen = RelativePosition { measured };
-        residuals.push(graph.add(seen, (poses[i], landmarks[k]), Matrix2::identity() * 100.0).unwrap());
+        graph.add(seen, (poses[i], landmarks[k]), Matrix2::identity() * 100.0).unwrap();
     }
-    World { graph, poses, landmarks, true_poses, residuals }
+    World { graph, poses, landmarks, true_poses }
 }
