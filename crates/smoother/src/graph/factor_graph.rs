@@ -275,7 +275,7 @@ impl Graph {
     /// the Gauss–Newton step. Rows of fixed variables are zero.
     ///
     /// ```
-    /// use nalgebra::{Matrix1, Vector1, dmatrix};
+    /// use nalgebra::{DMatrix, Matrix1, Vector1};
     /// use wayfix_smoother::Graph;
     /// # use wayfix_smoother::Residual;
     /// # struct Step(f64);
@@ -286,7 +286,7 @@ impl Graph {
     /// # }
     /// let mut graph = Graph::new();
     /// let [a, b] = [0.0, 0.9].map(|x| graph.add_variable(Vector1::new(x)));
-    /// graph.add_gaussian(&[a.index()], dmatrix![4.0])?; // a is 0 ± 0.5
+    /// graph.add_gaussian(&[a.index()], DMatrix::from_element(1, 1, 4.0))?; // a is 0 ± 0.5
     /// graph.add(Step(1.0), (a, b), Matrix1::new(4.0))?; // the residual b - a - 1
     /// let (mean, covariance) = graph.gaussian(&[b.index()])?;
     /// assert!((mean[0] - 0.1).abs() < 1e-9 && (covariance[(0, 0)] - 0.5).abs() < 1e-9);
