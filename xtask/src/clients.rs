@@ -81,8 +81,8 @@ fn convert_ros_bags() -> Result<()> {
 
 /// Tests the live view of a run with an independent WebSocket client.
 fn watch_live() -> Result<()> {
-    // Builds like the tests, which leave the program beside them, so nothing is compiled only for this.
-    let build = ["test", "--quiet", "--workspace", "--features=wayfix/live", "--test", "live", "--no-run"];
+    // Without a package, so that the features are those of the tests.
+    let build = ["build", "--quiet", "--locked", "--features=wayfix/live", "--bin", "wayfix"];
     shell::check(&mut shell::command("cargo", &build))?;
     let wayfix = shell::target_dir().join("debug").join("wayfix");
     let out = shell::target_dir().join("live");
