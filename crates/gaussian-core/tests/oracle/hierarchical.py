@@ -1,4 +1,4 @@
-"""Figures for tests/hierarchical_oracle.rs. Made with: pip install numpy scipy; python hierarchical.py
+"""Figures for tests/integration/hierarchical_oracle.rs. Made with: pip install numpy scipy; python hierarchical.py
 A general-purpose optimizer on the posterior of (mean, Cholesky factor): the group means are integrated out by writing every group's
 observations as one joint Gaussian, one row per observation, with no pooling. Prints how flat the posterior is where it stopped."""
 import numpy as np

@@ -1,4 +1,4 @@
-"""Figures of filterpy for tests/oracle.rs. Made with: pip install numpy scipy filterpy; python make.py
+"""Figures of filterpy for tests/integration/oracle.rs. Made with: pip install numpy scipy filterpy; python make.py
 Prints one Rust tuple a step: mean (4), variances and one covariance (5 numbers), log-likelihood."""
 import numpy as np
 import scipy.linalg
