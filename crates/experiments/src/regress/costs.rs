@@ -1,7 +1,6 @@
 use std::{collections::BTreeMap, fs, hint::black_box, path::Path};
 
 use anyhow::{Context, Result};
-use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::{RegressOptions, SeededRun};
@@ -116,12 +115,10 @@ pub(crate) fn calibration_seconds() -> f64 {
     const REPEATS: usize = 5;
     let once = |_| {
         let start = thread_seconds();
-        let mut matrix = SMatrix::<f64, 12, 12>::identity();
-        let step = SMatrix::<f64, 12, 12>::from_fn(|row, column| 1.0 / (20 + row + 2 * column) as f64);
-        for _ in 0..10_000 {
-            matrix = black_box(step * matrix + SMatrix::identity());
+        let mut x = 0.5;
+        for _ in 0..3_000_000 {
+            x = black_box(3.9 * x * (1.0 - x)); // Each step waits for the one before, however the compiler optimizes.
         }
-        black_box(matrix);
         thread_seconds() - start
     };
     (0..REPEATS).map(once).fold(f64::INFINITY, f64::min)
