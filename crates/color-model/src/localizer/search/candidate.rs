@@ -1,3 +1,4 @@
+use nalgebra::{Vector3, Vector4};
 use wayfix_estimation_traits::{LogWeight, Pose2};
 
 use super::trajectory::Trajectory;
@@ -11,10 +12,34 @@ pub(super) struct Candidate {
     pub(super) log_evidence: LogWeight,
     /// Of each frame that was weighed, its index and its log-likelihood in the light.
     pub(super) log_likelihoods: Vec<(usize, LogWeight)>,
-    /// Scale of the next step of the pose, and of the errors.
-    pub(super) steps: [f64; 2],
+    pub(super) steps: Steps,
     /// The place that was known before the search, if the candidate started there; it stays there.
     pub(super) known: Option<Pose2<f64>>,
+}
+
+/// The next step along each axis.
+#[derive(Clone, Default)]
+pub(super) struct Steps {
+    /// Of the pose, in cells.
+    pub(super) pose: Vector3<f64>,
+    /// Of the camera's error at all frames alike, in standard deviations.
+    pub(super) mount: Vector4<f64>,
+    /// Of the odometry from the frame before to each frame, in standard deviations.
+    pub(super) odometry: Vec<Vector3<f64>>,
+    /// Of the camera's error at each frame, in standard deviations.
+    pub(super) sway: Vec<Vector4<f64>>,
+}
+
+impl Steps {
+    /// Steps of the pose of this many cells, and one standard deviation of all errors.
+    pub(super) fn new(pose: f64, n_frames: usize) -> Self {
+        Self {
+            pose: Vector3::repeat(pose),
+            mount: Vector4::repeat(1.0),
+            odometry: vec![Vector3::repeat(1.0); n_frames],
+            sway: vec![Vector4::repeat(1.0); n_frames],
+        }
+    }
 }
 
 /// The light that a candidate's frames show.
@@ -37,7 +62,7 @@ impl Candidate {
             light: FittedLight::default(),
             log_evidence: f64::NEG_INFINITY,
             log_likelihoods: Vec::new(),
-            steps: [0.0; 2],
+            steps: Steps::default(),
             known: None,
         }
     }

@@ -7,7 +7,7 @@ use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
 use super::{
     Area, StartPosePrior,
-    candidate::{Candidate, retain_places},
+    candidate::{Candidate, Steps, retain_places},
     detections::Detections,
     evidence::{Effort, Evidence, Scratch},
     pyramid::Level,
@@ -29,14 +29,14 @@ use crate::{
 const SHRINK: [u16; 2] = [4, 2];
 /// Rounds of refinement; the first half of them is coarse. Three of four places are dropped after a round, and the others get twice as many moves and frames, in the last round all.
 const N_ROUNDS: u32 = 4;
-/// Factors of a step after a success and after a failure: the step stays the same if one in five succeeds. [Rechenberg 1973]
-const STEP_FACTORS: [f64; 2] = [1.5, 0.9036];
+/// Factors of a step along an axis: on after a success, back and half as far after a failure. [Rosenbrock 1960]
+const STEP_FACTORS: [f64; 2] = [3.0, -0.5];
 
 /// Global search in several frames at once.
 ///
 /// Under an unknown light some false place explains a single frame better than the true one. The light is common to all frames, so whole trajectories
-/// are weighed by all frames under one light. The likelihood is narrow: trajectories are drawn in every cell of its width and where detected landmarks fit, then moved by
-/// steps that adapt to their success [Rechenberg 1973], while the worse places are dropped again and again [Li et al. 2018].
+/// are weighed by all frames under one light. The likelihood is narrow: trajectories are drawn in every cell of its width and where detected landmarks fit, then moved
+/// along one axis after the other [Rosenbrock 1960], while the worse places are dropped again and again [Li et al. 2018].
 pub(crate) struct Search<'a, T> {
     evidence: Evidence<'a, T>,
     area: &'a Area,
@@ -45,9 +45,9 @@ pub(crate) struct Search<'a, T> {
     cell: Vector3<f64>,
 }
 
-/// Scales of the first steps of a round, of the pose in cells and of the errors in standard deviations: half of those of the round before.
-fn first_steps(round: u32) -> [f64; 2] {
-    [0.5, 1.0].map(|step| step / f64::from(1 << round))
+/// Scale of the first steps of the pose in a round, in cells: half of those of the round before.
+fn first_pose_step(round: u32) -> f64 {
+    0.5 / f64::from(1 << round)
 }
 
 /// A place that explains the frames.
@@ -116,9 +116,9 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                 if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
                     return; // The filter knows it from all frames: some of them would lead it away.
                 }
-                candidate.steps = first_steps(round);
-                for _ in 0..params.n_first_round_moves << round {
-                    self.refine(scratch, candidate, effort, rng);
+                candidate.steps = Steps::new(first_pose_step(round), self.evidence.frames.len());
+                for at in 0..(params.n_first_round_moves as usize) << round {
+                    self.refine(scratch, candidate, (effort, at), rng);
                 }
                 self.evidence.fit(scratch, candidate, effort, true);
             })?;
@@ -163,33 +163,35 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         Candidate::new(trajectory)
     }
 
-    /// Tries a step of the whole trajectory, and a step of the errors.
+    /// Tries a step of the whole trajectory, and a step of the errors: the `at`-th.
     fn refine(
         &self,
         scratch: &mut Scratch,
         candidate: &mut Candidate,
-        effort: Effort,
+        (effort, at): (Effort, usize),
         rng: &mut ParticleChunkRng,
     ) {
-        let [pose, errors] = candidate.steps;
-        let trajectory = candidate.trajectory.moved(&(self.cell * pose), rng);
+        let step = Vector3::ith(at % 3, candidate.steps.pose[at % 3]);
+        let trajectory = candidate.trajectory.moved_by(&self.cell.component_mul(&step));
         let is_better = self.consider(scratch, candidate, effort, trajectory);
-        candidate.steps[0] *= STEP_FACTORS[usize::from(!is_better)];
-        let is_better = match rng.random_range(0..3) {
+        candidate.steps.pose[at % 3] *= STEP_FACTORS[usize::from(!is_better)];
+        let axis = at / 3;
+        match at % 3 {
             0 => {
-                let trajectory = candidate.trajectory.with_other_mount(errors, rng);
-                self.consider(scratch, candidate, effort, trajectory)
+                let step = candidate.steps.mount[axis % 4];
+                let trajectory = candidate.trajectory.with_mount_off(axis % 4, step);
+                let is_better = self.consider(scratch, candidate, effort, trajectory);
+                candidate.steps.mount[axis % 4] *= STEP_FACTORS[usize::from(!is_better)];
             }
             1 => {
-                let trajectory = candidate.trajectory.with_other_odometry(errors, rng);
-                self.consider(scratch, candidate, effort, trajectory)
+                let frame = rng.random_range(0..self.evidence.frames.len());
+                let step = candidate.steps.odometry[frame][axis % 3];
+                let trajectory = candidate.trajectory.with_odometry_off(frame, axis % 3, step);
+                let is_better = self.consider(scratch, candidate, effort, trajectory);
+                candidate.steps.odometry[frame][axis % 3] *= STEP_FACTORS[usize::from(!is_better)];
             }
-            _ => {
-                let trajectory = candidate.trajectory.with_other_sway(errors, rng);
-                self.consider_each(scratch, candidate, effort, trajectory)
-            }
-        };
-        candidate.steps[1] *= STEP_FACTORS[usize::from(!is_better)];
+            _ => self.consider_each(scratch, candidate, effort, axis % 4),
+        }
     }
 
     /// Takes a trajectory if it explains the frames better; returns whether it does.
@@ -213,18 +215,12 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         is_better
     }
 
-    /// Takes the camera's error at each frame that it explains better; returns whether these are more than one in five. In a light that is given, a frame depends on its
-    /// own error alone.
-    fn consider_each(
-        &self,
-        scratch: &mut Scratch,
-        candidate: &mut Candidate,
-        effort: Effort,
-        trajectory: Trajectory,
-    ) -> bool {
+    /// Tries a step of the camera's error at each frame along an `axis`, and takes those that explain their frame better: in a light that is given, a frame depends on its own
+    /// error alone.
+    fn consider_each(&self, scratch: &mut Scratch, candidate: &mut Candidate, effort: Effort, axis: usize) {
+        let trajectory = candidate.trajectory.with_sway(axis, &candidate.steps.sway);
         let mut moved = Candidate { trajectory, ..candidate.clone() };
         self.evidence.weigh(scratch, &mut moved, effort);
-        let mut n_better = 0;
         for (log, new_log) in candidate.log_likelihoods.iter_mut().zip(&moved.log_likelihoods) {
             let at = log.0;
             let prior = |trajectory: &Trajectory| trajectory.log_prior_of_camera(at);
@@ -233,10 +229,9 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                 candidate.trajectory.take_camera_error(&moved.trajectory, at);
                 candidate.log_evidence += gain;
                 *log = *new_log;
-                n_better += 1;
             }
+            candidate.steps.sway[at][axis] *= STEP_FACTORS[usize::from(gain <= 0.0)];
         }
-        5 * n_better > candidate.log_likelihoods.len()
     }
 
     /// Particles about a candidate, spread as the last round explores it, with the light that all frames show from there.
@@ -252,7 +247,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut light = T::clone(lights[candidate.light.tracker]);
         let shown = self.evidence.shown(candidate, &locations);
         update_lights(&mut light, candidate.light.light, &shown, params);
-        let [spread, _] = first_steps(N_ROUNDS - 1);
+        let spread = first_pose_step(N_ROUNDS - 1);
         let location = |_| {
             let mut body = candidate.trajectory.moved(&(self.cell * spread), rng).newest;
             self.area.clamp(&mut body);

@@ -39,28 +39,34 @@ impl Trajectory {
 
     /// Moves the trajectory as a whole by a normal step of these standard deviations along x, y and the heading.
     pub(crate) fn moved<R: Rng + ?Sized>(&self, sigmas: &Vector3<f64>, rng: &mut R) -> Self {
-        let step = sigmas.map(|sigma| sigma * rng.sample::<f64, _>(StandardNormal));
-        Self { newest: self.newest.retract(&step), ..self.clone() }
+        self.moved_by(&sigmas.map(|sigma| sigma * rng.sample::<f64, _>(StandardNormal)))
     }
 
-    /// Changes the camera's errors at all frames alike by normal deviates of `scale`: a mount that is off for good.
-    pub(crate) fn with_other_mount<R: Rng + ?Sized>(&self, scale: f64, rng: &mut R) -> Self {
-        let step = deviates(scale, rng);
-        let errors = self.errors.iter().map(|(odometry, camera)| (*odometry, camera + step)).collect();
-        Self { errors, ..*self }
+    /// Moves the trajectory as a whole along x, y and the heading.
+    pub(crate) fn moved_by(&self, step: &Vector3<f64>) -> Self {
+        Self { newest: self.newest.retract(step), ..self.clone() }
     }
 
-    /// Changes the camera's error at each frame by normal deviates of `scale`: a body that sways.
-    pub(crate) fn with_other_sway<R: Rng + ?Sized>(&self, scale: f64, rng: &mut R) -> Self {
-        let errors = self.errors.iter().map(|(odometry, camera)| (*odometry, camera + deviates(scale, rng)));
-        Self { errors: errors.collect(), ..*self }
-    }
-
-    /// Changes the error of the odometry at one frame by normal deviates of `scale`.
-    pub(crate) fn with_other_odometry<R: Rng + ?Sized>(&self, scale: f64, rng: &mut R) -> Self {
+    /// Changes the camera's errors at all frames alike by a `step` along an `axis`: a mount that is off for good.
+    pub(crate) fn with_mount_off(&self, axis: usize, step: f64) -> Self {
         let mut changed = self.clone();
-        let at = rng.random_range(0..self.errors.len());
-        changed.errors[at].0 += deviates(scale, rng).xyz();
+        changed.errors.iter_mut().for_each(|(_, camera)| camera[axis] += step);
+        changed
+    }
+
+    /// Changes the camera's error at each frame along an `axis` by its step: a body that sways.
+    pub(crate) fn with_sway(&self, axis: usize, steps: &[Vector4<f64>]) -> Self {
+        let mut changed = self.clone();
+        for ((_, camera), step) in changed.errors.iter_mut().zip(steps) {
+            camera[axis] += step[axis];
+        }
+        changed
+    }
+
+    /// Changes the error of the odometry at one frame by a `step` along an `axis`.
+    pub(crate) fn with_odometry_off(&self, at: usize, axis: usize, step: f64) -> Self {
+        let mut changed = self.clone();
+        changed.errors[at].0[axis] += step;
         changed
     }
 
@@ -87,8 +93,4 @@ impl Trajectory {
         locations.reverse();
         locations
     }
-}
-
-fn deviates<R: Rng + ?Sized>(scale: f64, rng: &mut R) -> Vector4<f64> {
-    Vector4::from_fn(|_, _| scale * rng.sample::<f64, _>(StandardNormal))
 }
