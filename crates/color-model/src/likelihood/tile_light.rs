@@ -33,7 +33,8 @@ impl TileLight {
         Ok(Self(light.colors_in(at)?.into_iter().map(color).collect()))
     }
 
-    fn of(
+    /// With this mean and covariance of all colours.
+    pub(super) fn of(
         mean: &DVector<f64>,
         covariance: Option<&DMatrix<f64>>,
         params: &PixelLikelihoodParams,
@@ -74,19 +75,41 @@ impl TileLight {
         &self.0[color].mean
     }
 
-    /// $`\ln N(c)`$ on average over the pixels of a region.
-    pub(super) fn log_density(&self, region: &TileRegionColor) -> f64 {
-        let Some(ColorOfTile { mean, information, log_peak }) = self.0.get(region.color) else { return 0.0 };
-        let residual = region.mean - mean;
-        log_peak - 0.5 * (residual.component_mul(&residual) + region.scatter).dot(information)
+    /// $`\ln N(c; μ_m, Σ_{mm} + ν + B)`$ on average over the pixels of a tile. The pose and blur move the edges within a tile, so that a pixel may show the colour beyond one:
+    /// $`B`$ is the variance between the colours of the tile, 0 if it has one.
+    pub(super) fn log_density(&self, regions: &[TileRegionColor]) -> f64 {
+        let colors = || regions.iter().filter_map(|region| Some((region, self.0.get(region.color)?)));
+        if let [_] = regions {
+            return colors().map(|(region, color)| color.log_density(region)).sum();
+        }
+        let mean: Vector3<f64> = colors().map(|(region, color)| color.mean * region.share).sum();
+        let between: Vector3<f64> =
+            colors().map(|(region, color)| squared(color.mean - mean) * region.share).sum();
+        let log_density = |(region, color): (&TileRegionColor, &ColorOfTile)| {
+            region.share * color.widened(&between).log_density(region)
+        };
+        colors().map(log_density).sum()
     }
 }
 
 impl ColorOfTile {
     fn new(mean: Vector3<f64>, variance: Vector3<f64>) -> Self {
-        let log_peak = -0.5 * variance.map(|v| (std::f64::consts::TAU * v).ln()).sum();
+        let log_peak = -0.5 * variance.map(|v| std::f64::consts::TAU * v).product().ln();
         Self { mean, information: variance.map(f64::recip), log_peak }
     }
+
+    fn widened(&self, variance: &Vector3<f64>) -> Self {
+        Self::new(self.mean, self.information.map(f64::recip) + variance)
+    }
+
+    /// On average over the pixels of a region.
+    fn log_density(&self, region: &TileRegionColor) -> f64 {
+        self.log_peak - 0.5 * (squared(region.mean - self.mean) + region.scatter).dot(&self.information)
+    }
+}
+
+fn squared(vector: Vector3<f64>) -> Vector3<f64> {
+    vector.component_mul(&vector)
 }
 
 /// Updates a light with what it shines on, $`N(\bar c; θ, (ν + R) / w)`$ of weight $`w`$. Returns the density of its mean under the belief, times the volume of the posterior

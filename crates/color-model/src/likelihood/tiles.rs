@@ -7,7 +7,7 @@ use crate::{PixelSums, TileRegion, TiledImage};
 
 /// So many tiles are multiplied before a logarithm: their ratios, at most e⁵⁰ or so, fit a double.
 const N_MULTIPLIED: usize = 8;
-/// Steps of expectation maximization: the first one from the brightness of the tiles, the second one from their colours.
+/// Steps of expectation maximization: the first one from the beliefs and the brightness of the tiles, the second one from the first.
 const N_FIT_STEPS: usize = 2;
 
 /// The likelihood of an image in which every tile has a hidden light, as where the sun shines on a part of the floor.
@@ -16,7 +16,7 @@ const N_FIT_STEPS: usize = 2;
 /// ```math
 /// p(z | x, j) = \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, r_{tj} + ε \big]
 ///   + \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, \tfrac{1}{2} (r_{tj} + r_{ts}) + ε \big], \quad
-/// r_{tj} = \Big[ \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], Σ_j[m,m] + ν)}{p_{bg}(c)} \Big]^{1/n_t}
+/// r_{tj} = \Big[ \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], Σ_j[m,m] + ν + B_t)}{p_{bg}(c)} \Big]^{1/n_t}
 /// ```
 ///
 /// This is [Schulz & Fox 2004, Eqs. 9, 16] with the $`n_t`$ mapped pixels of a tile as one observation: they share shade and errors of the pose. Their sums suffice. A label that
@@ -48,7 +48,7 @@ struct Tile {
 pub(crate) struct TileRegionColor {
     pub(super) color: usize,
     /// Share of the pixels of the tile.
-    share: f64,
+    pub(super) share: f64,
     pub(super) mean: Vector3<f64>,
     /// Variance of the pixels about their mean.
     pub(super) scatter: Vector3<f64>,
@@ -93,7 +93,7 @@ impl TileLikelihood {
             }
             let count = region.sums.count() as f64;
             let scatter = region.sums.variance();
-            let background = region.sums.background_nats() / count + image.log_ratio_of_scatter(&scatter);
+            let background = region.sums.background_nats() / count;
             self.regions.push(TileRegionColor {
                 color: region.color,
                 share: count,
@@ -111,6 +111,9 @@ impl TileLikelihood {
         let start = self.tiles.last().map_or(0, |tile| tile.end);
         let n_pixels: f64 = self.regions[start..].iter().map(|region| region.share).sum();
         self.regions[start..].iter_mut().for_each(|region| region.share /= n_pixels);
+        if let [region] = &mut self.regions[start..] {
+            region.background += image.log_ratio_of_scatter(&region.scatter);
+        }
         let mapped = n_pixels / image.n_pixels(number) as f64;
         self.tiles.push(Tile { end: self.regions.len(), number, mapped, weight });
     }
@@ -121,11 +124,9 @@ impl TileLikelihood {
         ratios.clear();
         let mut start = 0;
         for Tile { end, .. } in tiles {
-            for light in lights {
-                let log =
-                    |region: &TileRegionColor| region.share * (light.log_density(region) + region.background);
-                ratios.push(regions[start..*end].iter().map(log).sum::<f64>().exp());
-            }
+            let regions = &regions[start..*end];
+            let background: f64 = regions.iter().map(|region| region.share * region.background).sum();
+            ratios.extend(lights.iter().map(|light| (light.log_density(regions) + background).exp()));
             start = *end;
         }
     }
@@ -190,8 +191,8 @@ impl TileLikelihood {
         }
     }
 
-    /// Some lights after expectation maximization [Dempster et al. 1977] on all tiles, and the logarithm of their density, as of [`TileLight::learned`]. Of two lights the
-    /// first one begins with the brighter tiles.
+    /// Some lights after expectation maximization [Dempster et al. 1977] on all tiles, and the logarithm of their density, as of [`TileLight::learned`]. It begins with the
+    /// tiles that show the map by the beliefs; of two lights, the first one begins with the brighter ones.
     pub(crate) fn fit(
         &mut self,
         beliefs: &[(&DVector<f64>, &DMatrix<f64>)],
@@ -199,14 +200,17 @@ impl TileLikelihood {
         frame: &PixelLikelihoodFrame,
     ) -> (Vec<TileLight>, LogWeight) {
         let noise = (&frame.pixel_color_variance, &frame.mean_color_variance);
-        let bright = self.brightness();
-        let mut shares: Vec<f64> = match beliefs.len() {
-            2 => bright
-                .iter()
-                .flat_map(|bright| [f64::from(u8::from(*bright > 1.0)), f64::from(u8::from(*bright <= 1.0))])
-                .collect(),
-            n => vec![1.0 / n as f64; n * self.n_tiles()],
-        };
+        let predicted =
+            |(mean, covariance): &(&_, &_)| TileLight::of(mean, Some(covariance), params, noise.0);
+        self.weigh(&beliefs.iter().map(predicted).collect::<Vec<_>>());
+        let odds = (1.0 - params.outlier_share) / params.outlier_share;
+        let mut shares: Vec<f64> =
+            self.ratios.iter().map(|ratio| 1.0 / (1.0 + 1.0 / (odds * ratio))).collect();
+        if beliefs.len() > 1 {
+            for (shares, bright) in shares.chunks_exact_mut(beliefs.len()).zip(self.brightness()) {
+                shares[usize::from(bright > 1.0)] = 0.0;
+            }
+        }
         let mut fitted = (Vec::new(), 0.0);
         for _ in 0..N_FIT_STEPS {
             let learned = beliefs.iter().enumerate().map(|(at, belief)| {
@@ -335,6 +339,29 @@ mod tests {
         let ratio = (pixels.iter().map(pixel).sum::<f64>() / 4.0 + NATS).exp();
         assert_abs_diff_eq!(value, (0.9 * ratio + 0.1).ln(), epsilon = 1e-4); // the background is rounded
         assert!(!is_shaded);
+    }
+
+    /// In the second row the edge is a pixel to the left of where the map has it.
+    #[test]
+    fn a_tile_with_an_edge_is_as_wide_as_its_colours_differ() {
+        let params = PixelLikelihoodParams { brightness_variation: 0.0, ..Default::default() };
+        let (dark, bright) = ([60, 128, 128], [160, 128, 128]);
+        let image = YuvImage::new(2, 2, vec![dark, bright, bright, bright]).unwrap();
+        let image = TiledImage::new(&image, 2, |_| NATS).unwrap();
+        let mut sums = TileSums::new(&image, 2);
+        for row in 0..2 {
+            sums.add_run(&image, (row, 0, 1), 0);
+            sums.add_run(&image, (row, 1, 2), 1);
+        }
+        let mean = DVector::from_iterator(6, [dark, bright].concat().into_iter().map(f64::from));
+        let light = TileLight::of(&mean, None, &params, &Vector3::new(25.0, 9.0, 9.0));
+        let mut tiles = TileLikelihood::default();
+        tiles.add_tiles(&image, sums.regions(), 1.0);
+        tiles.weigh(&[light]);
+        let variances = [25.0 + 50.0_f64.powi(2), 9.0, 9.0]; // each colour is 50 off the mean of the tile
+        let peak: f64 = variances.iter().map(|v| -0.5 * (std::f64::consts::TAU * v).ln()).sum();
+        let one_of_four = -0.5 * 100.0_f64.powi(2) / variances[0] / 4.0;
+        assert_abs_diff_eq!(tiles.ratios[0].ln(), peak + one_of_four + NATS, epsilon = 1e-4);
     }
 
     #[test]

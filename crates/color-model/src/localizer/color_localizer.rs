@@ -27,7 +27,7 @@ const TRACKING_PROBABILITY: f64 = 0.95;
 /// Localizes in a coloured map and learns the light at the same time: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 ///
 /// A particle is a camera location and, conditioned on it, a tracker of the light `T`. The odometry model `M` and the likelihood `L` are parameters too.
-/// Where the start is unknown, and once a second while the robot drives, a global search proposes places; [`RelocalizationTest`] decides between them and the
+/// Where the start is unknown, and every few seconds while the robot drives, a global search proposes places; [`RelocalizationTest`] decides between them and the
 /// present one.
 ///
 /// ```
@@ -288,8 +288,8 @@ where
         let params = &self.params.search;
         let (n_frames, is_first) = (self.n_updates + 1, self.n_updates == 0);
         let is_start = n_frames <= params.n_buffered_frames;
-        let is_due = n_frames.is_power_of_two()
-            || (!is_start && self.since_search + self.delta.seconds >= params.search_interval);
+        let is_late = self.since_search + self.delta.seconds >= params.search_interval;
+        let is_due = if is_start { n_frames.is_power_of_two() } else { is_late };
         let is_on = !self.params.relocalization.is_off();
         if params.samples_per_place == 0.0 || !is_due || !(is_start || is_on) {
             return Ok(None);
