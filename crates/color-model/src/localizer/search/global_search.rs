@@ -171,40 +171,38 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         (effort, at): (Effort, usize),
         rng: &mut ParticleChunkRng,
     ) {
+        let axis = at / 3;
         let step = Vector3::ith(at % 3, candidate.steps.pose[at % 3]);
         let trajectory = candidate.trajectory.moved_by(&self.cell.component_mul(&step));
-        let is_better = self.consider(scratch, candidate, effort, trajectory);
-        candidate.steps.pose[at % 3] *= STEP_FACTORS[usize::from(!is_better)];
-        let axis = at / 3;
+        candidate.steps.pose[at % 3] *= self.consider(scratch, candidate, effort, trajectory);
         match at % 3 {
             0 => {
                 let step = candidate.steps.mount[axis % 4];
                 let trajectory = candidate.trajectory.with_mount_off(axis % 4, step);
-                let is_better = self.consider(scratch, candidate, effort, trajectory);
-                candidate.steps.mount[axis % 4] *= STEP_FACTORS[usize::from(!is_better)];
+                candidate.steps.mount[axis % 4] *= self.consider(scratch, candidate, effort, trajectory);
             }
             1 => {
                 let frame = rng.random_range(0..self.evidence.frames.len());
                 let step = candidate.steps.odometry[frame][axis % 3];
                 let trajectory = candidate.trajectory.with_odometry_off(frame, axis % 3, step);
-                let is_better = self.consider(scratch, candidate, effort, trajectory);
-                candidate.steps.odometry[frame][axis % 3] *= STEP_FACTORS[usize::from(!is_better)];
+                candidate.steps.odometry[frame][axis % 3] *=
+                    self.consider(scratch, candidate, effort, trajectory);
             }
             _ => self.consider_each(scratch, candidate, effort, axis % 4),
         }
     }
 
-    /// Takes a trajectory if it explains the frames better; returns whether it does.
+    /// Takes a trajectory if it explains the frames better; returns the factor of the next step.
     fn consider(
         &self,
         scratch: &mut Scratch,
         candidate: &mut Candidate,
         effort: Effort,
         mut trajectory: Trajectory,
-    ) -> bool {
+    ) -> f64 {
         self.area.clamp(&mut trajectory.newest);
         if candidate.known.is_some_and(|known| !is_same_place(&known, &trajectory.newest)) {
-            return false;
+            return STEP_FACTORS[1];
         }
         let mut moved = Candidate { trajectory, ..candidate.clone() };
         self.evidence.weigh(scratch, &mut moved, effort);
@@ -212,7 +210,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         if is_better {
             *candidate = moved;
         }
-        is_better
+        STEP_FACTORS[usize::from(!is_better)]
     }
 
     /// Tries a step of the camera's error at each frame along an `axis`, and takes those that explain their frame better: in a light that is given, a frame depends on its own
