@@ -132,7 +132,7 @@ impl LikelihoodModel for PixelLikelihoodParams {
                 }
                 let in_light = LightOfTiles { light: at, shade: light.shade_of(at), n_lights };
                 let n_tiles = tiles.n_tiles();
-                let (log, is_shaded) = tiles.log_likelihood(view.image, in_light, 0..n_tiles, self);
+                let (log, is_shaded) = tiles.log_likelihood(view.image, in_light, 0..n_tiles);
                 *value = log;
                 let in_light = LightOfTiles { shade: in_light.shade.filter(|_| is_shaded), ..in_light };
                 tiles.show(view.tiles.regions(), in_light, self, shown);

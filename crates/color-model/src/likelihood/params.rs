@@ -29,8 +29,8 @@ pub struct PixelLikelihoodParams {
     /// Side of a tile, pixels. The pixels of one colour in a tile share shade, blur and label errors, and count as one observation. Default 16: the
     /// edge of a shadow crosses few tiles, and landmarks have tiles of their own.
     pub tile_pixels: u16,
-    /// Prior probability that a tile shows something that is not on the map. Such a tile counts the logarithm of this share, at any pose. Default 0.1: a person or
-    /// a ball covers about a tenth of a view.
+    /// Prior probability that a tile shows something that is not on the map, when a light is learned; of independent pixels, that a region does. To the likelihood
+    /// of tiles any share of an image is as probable. Default 0.1: a person or a ball covers about a tenth of a view.
     pub outlier_share: f64,
     /// Standard deviation of the illumination over the field and over an image, as a share of the light. Default 0.12: vignetting and shade.
     pub brightness_variation: f64,

@@ -7,6 +7,9 @@ use crate::{PixelSums, TileRegion, TiledImage};
 
 /// So many tiles are multiplied before a logarithm: their ratios, at most e⁵⁰ or so, fit a double.
 const N_MULTIPLIED: usize = 8;
+/// Shares of the tiles that show something else, and the weights of Gauss-Legendre quadrature. [Abramowitz & Stegun 1964, 25.4.29]
+const OUTLIER_SHARES: [(f64, f64); 3] =
+    [(0.112_701_665, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_335, 5.0 / 18.0)];
 /// Steps of expectation maximization: the first one from the beliefs and the brightness of the tiles, the second one from the first.
 const N_FIT_STEPS: usize = 2;
 
@@ -14,8 +17,8 @@ const N_FIT_STEPS: usize = 2;
 ///
 /// All tiles $`t`$ are in one light $`j`$, or some are in its shade $`s`$, or a tile shows something else, as a ball or a person:
 /// ```math
-/// p(z | x, j) = \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, r_{tj} + ε \big]
-///   + \frac{p(u)}{2} \prod_t \big[ (1 - ε)\, \tfrac{1}{2} (r_{tj} + r_{ts}) + ε \big], \quad
+/// p(z | x, j) = \frac{1}{2} \int_0^1 \! dε\, p(u) \prod_t \big[ (1 - ε)\, r_{tj} + ε \big]
+///   + \frac{1}{2} \int_0^1 \! dε\, p(u) \prod_t \big[ (1 - ε)\, \tfrac{1}{2} (r_{tj} + r_{ts}) + ε \big], \quad
 /// r_{tj} = \Big[ \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], Σ_j[m,m] + ν + B_t)}{p_{bg}(c)} \Big]^{1/n_t}
 /// ```
 ///
@@ -137,32 +140,34 @@ impl TileLikelihood {
         image: &TiledImage,
         LightOfTiles { light, shade, n_lights }: LightOfTiles,
         tiles: std::ops::Range<usize>,
-        params: &PixelLikelihoodParams,
     ) -> (LogWeight, bool) {
-        let even = self.log_likelihood_of(image, (&tiles, n_lights), params, |ratios| ratios[light]);
+        let even = self.log_likelihood_of(image, (&tiles, n_lights), |ratios| ratios[light]);
         let Some(shade) = shade else { return (even, false) };
         let mean = |ratios: &[f64]| 0.5 * (ratios[light] + ratios[shade]);
-        let uneven = self.log_likelihood_of(image, (&tiles, n_lights), params, mean);
+        let uneven = self.log_likelihood_of(image, (&tiles, n_lights), mean);
         (log_sum_exp(&[even, uneven]) - std::f64::consts::LN_2, uneven > even)
     }
 
-    /// The log-likelihood of an image if a tile that shows the map has this likelihood ratio. Tiles that show something else are background.
+    /// The log-likelihood of an image if a tile that shows the map has this likelihood ratio. Tiles that show something else are background, and any share of them is as
+    /// probable: a robot near by covers half of a view.
     fn log_likelihood_of(
         &mut self,
         image: &TiledImage,
         (range, n_lights): (&std::ops::Range<usize>, usize),
-        params: &PixelLikelihoodParams,
-        ratio: impl Fn(&[f64]) -> f64,
+        ratio: impl Fn(&[f64]) -> f64 + Clone,
     ) -> LogWeight {
         let Self { tiles, ratios, unmapped, .. } = self;
         let (tiles, ratios) = (&tiles[range.clone()], ratios.chunks_exact(n_lights.max(1)).skip(range.start));
-        let shown = ratios.take(tiles.len()).map(|ratios| (1.0 - params.outlier_share) * ratio(ratios));
-        let log = log_product(shown.clone().map(|shown| shown + params.outlier_share));
-        let Some(colors) = image.unmapped_colors() else { return log };
-        let probability = |shown: f64| shown / (shown + params.outlier_share);
-        let mapped =
-            tiles.iter().zip(shown).map(|(tile, shown)| (tile.number, tile.mapped * probability(shown)));
-        log + colors.log_ratio(mapped, unmapped)
+        let ratios = ratios.take(tiles.len()).map(ratio);
+        log_sum_exp(&OUTLIER_SHARES.map(|(outlier_share, weight)| {
+            let shown = ratios.clone().map(|ratio| (1.0 - outlier_share) * ratio);
+            let log = weight.ln() + log_product(shown.clone().map(|shown| shown + outlier_share));
+            let Some(colors) = image.unmapped_colors() else { return log };
+            let probability = |shown: f64| shown / (shown + outlier_share);
+            let mapped =
+                tiles.iter().zip(shown).map(|(tile, shown)| (tile.number, tile.mapped * probability(shown)));
+            log + colors.log_ratio(mapped, unmapped)
+        }))
     }
 
     /// Adds the pixels of each tile to its light, unless it shows something else; `shown` has all colours of the first light, then those of the next. All tiles are in the
@@ -329,7 +334,7 @@ mod tests {
         tiles.add_tiles(&image, sums.regions(), 1.0);
         tiles.weigh(&[light(100.0, &params)]);
         let in_light = LightOfTiles { light: 0, shade: None, n_lights: 1 };
-        let (value, is_shaded) = tiles.log_likelihood(&image, in_light, 0..1, &params);
+        let (value, is_shaded) = tiles.log_likelihood(&image, in_light, 0..1);
         let normal = |x: f64, v: f64| -0.5 * (x * x / v + (std::f64::consts::TAU * v).ln());
         let variances = [26.0, 34.0, 34.0]; // of the light and of a pixel
         let pixel = |pixel: &[u8; 3]| -> f64 {
@@ -337,7 +342,8 @@ mod tests {
         };
         // The only tile has the median scatter and the mean one.
         let ratio = (pixels.iter().map(pixel).sum::<f64>() / 4.0 + NATS).exp();
-        assert_abs_diff_eq!(value, (0.9 * ratio + 0.1).ln(), epsilon = 1e-4); // the background is rounded
+        // The mean over all shares of what is something else; the background is rounded.
+        assert_abs_diff_eq!(value, (0.5 * ratio + 0.5).ln(), epsilon = 1e-4);
         assert!(!is_shaded);
     }
 
@@ -372,10 +378,10 @@ mod tests {
         let mut tiles = TileLikelihood::default();
         tiles.add_tiles(&image, sums.regions(), 1.0);
         tiles.weigh(&[light(200.0, &params), light(60.0, &params)]);
-        let alone = tiles.log_likelihood(&image, LightOfTiles { shade: None, ..SHADED }, 0..3, &params).0;
-        let (shaded, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..3, &params);
+        let alone = tiles.log_likelihood(&image, LightOfTiles { shade: None, ..SHADED }, 0..3).0;
+        let (shaded, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..3);
         assert!(is_shaded && shaded > alone);
-        let (_, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..1, &params);
+        let (_, is_shaded) = tiles.log_likelihood(&image, SHADED, 0..1);
         assert!(!is_shaded); // the first tile alone
         let mut shown = [PixelSums::default(); 2];
         tiles.show(sums.regions(), SHADED, &params, &mut shown);

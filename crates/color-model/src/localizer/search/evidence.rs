@@ -183,7 +183,7 @@ impl<T: LightingTracker> Evidence<'_, T> {
         let mut start = 0;
         for GatheredFrame { index, end, independent_share } in &*gathered {
             let (image, lights) = (&self.levels[level].tiles[*index], fitted_light(&fitted.lights));
-            let (log, _) = tiles.log_likelihood(image, lights, start..*end, self.scene.pixels);
+            let (log, _) = tiles.log_likelihood(image, lights, start..*end);
             values.push(independent_share * or_hidden(log, hidden));
             start = *end;
         }
