@@ -9,6 +9,7 @@ mod occlusion;
 mod params;
 mod pixel;
 mod span;
+mod tile_fit;
 mod tile_light;
 mod tiles;
 mod view;
