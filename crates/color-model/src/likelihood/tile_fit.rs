@@ -24,7 +24,7 @@ impl TileLikelihood {
         let odds = (1.0 - params.outlier_share) / params.outlier_share;
         let mut shares: Vec<f64> =
             self.ratios.iter().map(|ratio| 1.0 / (1.0 + 1.0 / (odds * ratio))).collect();
-        if beliefs.len() > 1 {
+        if beliefs.len() == 2 {
             for (shares, bright) in shares.chunks_exact_mut(beliefs.len()).zip(self.brightness()) {
                 shares[usize::from(bright > 1.0)] = 0.0;
             }

@@ -7,7 +7,8 @@ use crate::{PixelSums, TileRegion, TiledImage};
 
 /// So many tiles are multiplied before a logarithm: their ratios, at most e⁵⁰ or so, fit a double.
 const N_MULTIPLIED: usize = 8;
-/// Shares of the tiles that show something else, and the weights of Gauss-Legendre quadrature. [Abramowitz & Stegun 1964, 25.4.29]
+/// Shares of the tiles that show something else, about a tenth, half and nine tenths, and the weights of Gauss-Legendre quadrature: a coarse integral over all shares.
+/// [Abramowitz & Stegun 1964, 25.4.29]
 const OUTLIER_SHARES: [(f64, f64); 3] =
     [(0.112_701_665, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_335, 5.0 / 18.0)];
 
@@ -112,6 +113,7 @@ impl TileLikelihood {
         let start = self.tiles.last().map_or(0, |tile| tile.end);
         let n_pixels: f64 = self.regions[start..].iter().map(|region| region.share).sum();
         self.regions[start..].iter_mut().for_each(|region| region.share /= n_pixels);
+        // Several colours scatter about their edge.
         if let [region] = &mut self.regions[start..] {
             region.background += image.log_ratio_of_scatter(&region.scatter);
         }
