@@ -27,7 +27,7 @@ impl PoseEstimate {
 }
 
 /// Radius of a place, in m and in rad: poses within it belong to one hypothesis. The camera of a four-legged robot (50°) shows less than a
-/// landmark's width more or less within this distance, so that the likelihood has one peak there.
+/// landmark's width more or less within this distance.
 pub(crate) const PLACE_RADIUS: f64 = 0.3;
 
 /// Whether two poses are in one place.

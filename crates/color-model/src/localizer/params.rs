@@ -54,8 +54,8 @@ pub struct GlobalSearchParams {
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad; 0 never searches. Default 1.
     pub samples_per_place: f64,
-    /// Number of places that are refined at first; a quarter of them is kept after each of three rounds. Default 800.
-    pub n_refined_places: usize,
+    /// Number of trajectories that are refined at first; a quarter of them is kept after each of three rounds. Default 800.
+    pub n_refined_trajectories: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next. Default 10.
     pub n_first_round_moves: u32,
     /// Time between searches after the start, s. Default 3. A search takes one to two seconds on two cores: with ten images a second,
@@ -68,7 +68,7 @@ impl Default for GlobalSearchParams {
         Self {
             n_buffered_frames: 16,
             samples_per_place: 1.0,
-            n_refined_places: 800,
+            n_refined_trajectories: 800,
             n_first_round_moves: 10,
             search_interval: 3.0,
         }
@@ -127,7 +127,7 @@ impl LocalizerParams {
             check(what, value, 0.0, f64::MAX)?;
         }
         check("number of frames", self.search.n_buffered_frames as f64, 1.0, f64::MAX)?;
-        check("number of places", self.search.n_refined_places as f64, 1.0, f64::MAX)?;
+        check("number of refined trajectories", self.search.n_refined_trajectories as f64, 1.0, f64::MAX)?;
         check("number of moves", f64::from(self.search.n_first_round_moves), 0.0, f64::from(u16::MAX))?;
         check("largest number of particles", self.max_particles as f64, 1.0, f64::MAX)?;
         check(

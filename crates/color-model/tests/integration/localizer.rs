@@ -16,7 +16,7 @@ fn params() -> LocalizerParams {
     let search = GlobalSearchParams {
         n_buffered_frames: 4,
         samples_per_place: 0.15,
-        n_refined_places: 40,
+        n_refined_trajectories: 40,
         ..GlobalSearchParams::default()
     };
     LocalizerParams { max_particles: 200, search, ..LocalizerParams::default() }
@@ -74,17 +74,21 @@ fn a_robot_is_found_from_a_rough_start_and_followed() {
     let mut scene = Scene::new();
     for (seed, body) in [(1, Pose2::new(0.5, 0.2, 0.4)), (2, Pose2::new(-1.0, -0.5, 2.5))] {
         let (views, truth) = drive(&mut scene, body, 32, seed);
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rough = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
         // With less effort the first searches may miss the peak.
         let search = GlobalSearchParams::default();
         let params = LocalizerParams { max_particles: 500, search, ..params() };
-        let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
-        let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
-        let off = truth.local(last.estimate.pose.mean());
-        // What the system promises of position and heading; the start was 0.28 m and 11° off.
-        assert!(off[0].hypot(off[1]) < 0.1 && off[2].abs() < 0.052, "seed {seed}: {off:?}");
-        assert_eq!(last.status, LocalizationStatus::Tracking, "seed {seed}");
+        let errors = [1, 2, 3].map(|draws| {
+            let mut rng = ChaCha8Rng::seed_from_u64(draws);
+            let mut localizer = localizer_with(params, &scene, &rough, &mut rng);
+            let last = follow(&mut localizer, &views, &mut rng).pop().unwrap();
+            assert_eq!(last.status, LocalizationStatus::Tracking, "drive {seed}, draws {draws}");
+            let off = truth.local(last.estimate.pose.mean());
+            [off.xy().norm(), off.z.abs()]
+        });
+        let [position, heading] = [0, 1].map(|at| errors.iter().map(|error| error[at] / 3.0).sum::<f64>());
+        // What the system promises of the mean errors; the start was 0.28 m and 11° off.
+        assert!(position < 0.1 && heading < 0.052, "drive {seed}: {errors:?}");
     }
 }
 
@@ -190,7 +194,7 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
     }
     refused(&|params| params.max_particles = 0);
     refused(&|params| params.pixels.tile_pixels = 0);
-    refused(&|params| params.search.n_refined_places = 0);
+    refused(&|params| params.search.n_refined_trajectories = 0);
 }
 
 #[test]

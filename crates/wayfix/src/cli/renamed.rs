@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 212] = [
+const RENAMED: [(&str, &str); 213] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -128,7 +128,8 @@ const RENAMED: [(&str, &str); 212] = [
     ("n_effective_pixels", "tile_pixels"),
     ("n_frames", "n_buffered_frames"),
     ("n_moves", "n_first_round_moves"),
-    ("n_places", "n_refined_places"),
+    ("n_places", "n_refined_trajectories"),
+    ("n_refined_places", "n_refined_trajectories"),
     ("n_sampled_trajectories", "samples_per_place"),
     ("n_scales", "n_scale_hypotheses"),
     ("n_search_samples", "n_search_color_hypotheses"),

@@ -1,8 +1,8 @@
 use nalgebra::{Vector3, Vector4};
-use wayfix_estimation_traits::{LogWeight, Pose2};
+use wayfix_estimation_traits::{LogWeight, Manifold, Pose2};
 
 use super::trajectory::Trajectory;
-use crate::{likelihood::TileLight, localizer::estimate::is_same_place};
+use crate::likelihood::TileLight;
 
 /// A trajectory, and how well it explains the frames.
 #[derive(Clone)]
@@ -68,13 +68,13 @@ impl Candidate {
     }
 }
 
-/// Keeps the `n` best that are in different places, the best first, and the known one.
-pub(super) fn retain_places(candidates: &mut Vec<Candidate>, n: usize) {
+/// Keeps the `n` best that are at least a `distance` (m and rad) from each other, the best first, and the known one.
+pub(super) fn retain_distant(candidates: &mut Vec<Candidate>, n: usize, distance: f64) {
     candidates.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in candidates.drain(..) {
-        let is_near =
-            |other: &Candidate| is_same_place(&other.trajectory.newest, &candidate.trajectory.newest);
+        let pose = candidate.trajectory.newest;
+        let is_near = |other: &Candidate| other.trajectory.newest.local(&pose).norm() < distance;
         if candidate.known.is_some() || (kept.len() < n.max(1) && !kept.iter().any(is_near)) {
             kept.push(candidate);
         }

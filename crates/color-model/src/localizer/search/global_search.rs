@@ -1,13 +1,14 @@
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
 use wayfix_estimation_traits::{LogWeight, Pose2};
 use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
 use super::{
     Area, StartPosePrior,
-    candidate::{Candidate, Steps, retain_places},
+    axes::{ground_in_view, pose_axes},
+    candidate::{Candidate, Steps, retain_distant},
     detections::Detections,
     evidence::{Effort, Evidence, Scratch},
     pyramid::Level,
@@ -27,7 +28,8 @@ use crate::{
 
 /// The images are searched at a quarter and at half of their resolution.
 const SHRINK: [u16; 2] = [4, 2];
-/// Rounds of refinement; the first half of them is coarse. Three of four places are dropped after a round, and the others get twice as many moves and frames, in the last round all.
+/// Rounds of refinement; the first half of them is coarse. Three of four trajectories are dropped after a round, and the others get twice as many moves and frames, in the last
+/// round all.
 const N_ROUNDS: u32 = 4;
 /// Factors of a step along an axis: on after a success, back and half as far after a failure. [Rosenbrock 1960]
 const STEP_FACTORS: [f64; 2] = [3.0, -0.5];
@@ -36,7 +38,8 @@ const STEP_FACTORS: [f64; 2] = [3.0, -0.5];
 ///
 /// Under an unknown light some false place explains a single frame better than the true one. The light is common to all frames, so whole trajectories
 /// are weighed by all frames under one light. The likelihood is narrow: trajectories are drawn in every cell of its width and where detected landmarks fit, then moved
-/// along one axis after the other [Rosenbrock 1960], while the worse places are dropped again and again [Li et al. 2018].
+/// along one axis after the other [Rosenbrock 1960], while the worse ones are dropped again and again [Li et al. 2018]. A place has several peaks, and keeps a trajectory at each
+/// until the end: the one that led at first need not be the highest.
 pub(crate) struct Search<'a, T> {
     evidence: Evidence<'a, T>,
     area: &'a Area,
@@ -107,7 +110,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             self.evidence.fit(scratch, candidate, rough, false);
         })?;
         candidates.extend(known.map(|at| self.known(&at)));
-        retain_places(&mut candidates, params.n_refined_places);
+        retain_distant(&mut candidates, params.n_refined_trajectories, self.peak_width());
         for round in 0..N_ROUNDS {
             let n_frames = if round + 1 < N_ROUNDS { 2 << round } else { self.evidence.frames.len() };
             let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames };
@@ -122,13 +125,17 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                 }
                 self.evidence.fit(scratch, candidate, effort, true);
             })?;
-            retain_places(
-                &mut candidates,
-                params.n_refined_places >> (2 * (round + 1)).min(2 * N_ROUNDS - 2),
-            );
+            let n_kept = params.n_refined_trajectories >> (2 * (round + 1)).min(2 * N_ROUNDS - 2);
+            retain_distant(&mut candidates, n_kept, self.peak_width());
         }
+        retain_distant(&mut candidates, usize::MAX, PLACE_RADIUS);
         let n_particles = self.evidence.params.max_particles.div_ceil(candidates.len().max(1));
         candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()
+    }
+
+    /// Distance (m and rad) between peaks of the likelihood, several of which may be in one place: the turn that shows other colours in a tile.
+    fn peak_width(&self) -> f64 {
+        self.cell.z
     }
 
     /// Trajectories that the start allows. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
@@ -172,8 +179,11 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         rng: &mut ParticleChunkRng,
     ) {
         let axis = at / 3;
-        let step = Vector3::ith(at % 3, candidate.steps.pose[at % 3]);
-        let trajectory = candidate.trajectory.moved_by(&self.cell.component_mul(&step));
+        let Evidence { levels: [_, fine], frames, .. } = &self.evidence;
+        let point =
+            frames.last().map_or(Vector2::zeros(), |newest| ground_in_view(newest, &fine.camera, rng));
+        let step = pose_axes(&point, &self.cell)[at % 3] * candidate.steps.pose[at % 3];
+        let trajectory = candidate.trajectory.moved_by(&step);
         candidate.steps.pose[at % 3] *= self.consider(scratch, candidate, effort, trajectory);
         match at % 3 {
             0 => {

@@ -1,5 +1,6 @@
 //! Global search: the places that explain the last frames.
 
+mod axes;
 mod candidate;
 mod detections;
 mod evidence;
