@@ -92,6 +92,8 @@ pub(crate) struct Judged {
     pub(crate) status: LocalizationStatus,
     pub(crate) position_error: f64,
     pub(crate) heading_error_deg: f64,
+    /// Standard deviations of the estimate: of the position, m, and of the heading, °.
+    pub(crate) sigmas: [f64; 2],
 }
 
 impl Judged {
@@ -121,10 +123,12 @@ pub(crate) fn localize_with(
     let run = color::run(records, Arc::new(map), bank, &params, start, 1, |_| {}).expect("images");
     let judge = |(frame, pose): &(&color::ColorFrameResult, wayfix_evaluation::errors::PoseWithTruth)| {
         let off: Vector3<f64> = pose.truth.local(&pose.estimate);
+        let variances = frame.pose.covariance().diagonal();
         Judged {
             status: frame.status,
             position_error: off.xy().norm(),
             heading_error_deg: off.z.abs().to_degrees(),
+            sigmas: [variances.xy().sum().sqrt(), variances.z.sqrt().to_degrees()],
         }
     };
     run.samples().iter().map(judge).collect()
@@ -138,7 +142,7 @@ pub(crate) fn n_wrongly_tracked(frames: &[Judged]) -> usize {
 /// One line a frame.
 pub(crate) fn table(frames: &[Judged]) -> String {
     let line = |(number, frame): (usize, &Judged)| {
-        let Judged { status, position_error, heading_error_deg } = frame;
+        let Judged { status, position_error, heading_error_deg, .. } = frame;
         format!("{number:4} {status:?} {position_error:.3} m {heading_error_deg:.1}°\n")
     };
     frames.iter().enumerate().map(line).collect()
