@@ -145,7 +145,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let n_cells: usize = counts.iter().product();
         let n = (params.search.samples_per_place * n_cells as f64).ceil() as usize;
         let newest = coarse.images.len() - 1;
-        (0..n + n / 2).filter_map(move |at| {
+        let n_detected = if matches!(start, StartPosePrior::Anywhere) { n / 2 } else { 0 };
+        (0..n + n_detected).filter_map(move |at| {
             let (frame, pose) = match start {
                 StartPosePrior::Anywhere if at < n => {
                     (newest, self.area.draw_in(at * n_cells / n, counts, rng))
