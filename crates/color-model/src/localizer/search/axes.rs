@@ -9,8 +9,8 @@ const MIN_SLOPE: f64 = 1e-3;
 
 /// The axes along which the search moves a pose, each a cell (m, m, rad) long in the body frame: towards a `point`, about it, and a turn on the spot.
 ///
-/// A step about a point leaves it where the camera sees it. Along the sides of the body, a step moves all that is in view, and a peak of the likelihood that is oblique
-/// to the sides is not climbed.
+/// A step about a point leaves it where the camera sees it. A step along a side of the body moves all that is in view: a peak of the likelihood that is oblique to the
+/// sides is not climbed. A point nearer than a place is treated as if at its radius.
 pub(super) fn pose_axes(point: &Vector2<f64>, cell: &Vector3<f64>) -> [Vector3<f64>; 3] {
     let distance = point.norm().max(PLACE_RADIUS);
     let towards = point / distance;
