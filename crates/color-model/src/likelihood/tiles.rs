@@ -170,6 +170,29 @@ impl TileLikelihood {
         }))
     }
 
+    /// The number of each tile in its image, and what it adds to the log-likelihood of the image.
+    pub(crate) fn gains(
+        &mut self,
+        image: &TiledImage,
+        lights: LightOfTiles,
+        tiles: std::ops::Range<usize>,
+    ) -> Vec<(usize, LogWeight)> {
+        let (all, _) = self.log_likelihood(image, lights, tiles.clone());
+        let last = tiles.end.saturating_sub(1);
+        let gain = |tile: usize| {
+            self.swap(tile, last, lights.n_lights);
+            let (others, _) = self.log_likelihood(image, lights, tiles.start..last);
+            self.swap(tile, last, lights.n_lights);
+            (self.tiles[tile].number, all - others)
+        };
+        tiles.clone().map(gain).collect()
+    }
+
+    fn swap(&mut self, one: usize, other: usize, n_lights: usize) {
+        self.tiles.swap(one, other);
+        (0..n_lights).for_each(|light| self.ratios.swap(one * n_lights + light, other * n_lights + light));
+    }
+
     /// Adds the pixels of each tile to its light, unless it shows something else; `shown` has all colours of the first light, then those of the next. All tiles are in the
     /// light, or each in the more probable one of light and shade.
     pub(crate) fn show(
@@ -311,6 +334,20 @@ pub(super) mod tests {
         let mut shown = [PixelSums::default(); 2];
         tiles.show(sums.regions(), LightOfTiles { shade: None, ..SHADED }, &params, &mut shown);
         assert_eq!(shown.map(|sums| sums.count()), [4, 0]); // the others show something else
+    }
+
+    #[test]
+    fn the_gain_of_a_tile_is_what_an_image_without_it_lacks() {
+        let params = PixelLikelihoodParams::default();
+        let (image, sums) = tiles(&[[[192, 128, 128]; 4], [[52, 128, 128]; 4], [[150, 120, 128]; 4]]);
+        let mut tiles = TileLikelihood::default();
+        tiles.add_tiles(&image, sums.regions(), 1.0);
+        tiles.weigh(&[light(200.0, &params), light(60.0, &params)]);
+        let gains = tiles.gains(&image, SHADED, 0..3);
+        let [all, first, last] =
+            [0..3, 1..3, 0..2].map(|range| tiles.log_likelihood(&image, SHADED, range).0);
+        assert_eq!(gains[0], (0, all - first));
+        assert_eq!(gains[2], (2, all - last));
     }
 
     #[test]

@@ -3,18 +3,18 @@ use std::{collections::VecDeque, sync::Arc};
 use rand::Rng;
 use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_estimation_traits::{Pose2, Pose3};
-use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
+use wayfix_integrity::RelocalizationTest;
 
 use super::{
     FrameOutcome, LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep,
     PoseEstimate, StartPosePrior,
     buffer::{BufferedFrame, FrameBuffer},
     camera::CameraLocation,
-    estimate::{PLACE_RADIUS, is_same_place},
+    estimate::PLACE_RADIUS,
     filter::ColorFilter,
     frame::{PreparedFrame, Scene, check_frame},
     odometry::OdometryDelta,
-    search::{Area, Found, Search},
+    search::Area,
 };
 use crate::{
     BackgroundColorModel, ColorModelError, LightingFilterBank, LightingTracker, LikelihoodModel,
@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// Probability of a place from which on it is tracked.
-const TRACKING_PROBABILITY: f64 = 0.95;
+pub(super) const TRACKING_PROBABILITY: f64 = 0.95;
 
 /// Localizes in a coloured map and learns the light at the same time: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 ///
@@ -59,27 +59,27 @@ const TRACKING_PROBABILITY: f64 = 0.95;
 /// ```
 pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLikelihoodParams> {
     map: Arc<ColorMap>,
-    camera: PinholeCamera,
-    area: Area,
+    pub(super) camera: PinholeCamera,
+    pub(super) area: Area,
     background: Option<BackgroundColorModel>,
-    params: LocalizerParams,
+    pub(super) params: LocalizerParams,
     odometry: M,
     likelihood: L,
-    start: StartPosePrior,
+    pub(super) start: StartPosePrior,
     /// The light before the first frame.
-    prior: Arc<SunAndShade<T>>,
+    pub(super) prior: Arc<SunAndShade<T>>,
     /// The most probable place.
     present: ColorFilter<SunAndShade<T>>,
     relocalization: RelocalizationTest<ColorFilter<SunAndShade<T>>>,
     /// Since the last frame.
-    delta: OdometryDelta,
+    pub(super) delta: OdometryDelta,
     buffer: FrameBuffer,
     /// The light of the most probable place before each frame of the buffer.
-    lights: VecDeque<Arc<SunAndShade<T>>>,
-    n_updates: usize,
+    pub(super) lights: VecDeque<Arc<SunAndShade<T>>>,
+    pub(super) n_updates: usize,
     /// Since the last search, s.
-    since_search: f64,
-    /// Whether a second search found no better place than the present one.
+    pub(super) since_search: f64,
+    /// Whether a search was certain of the present place: the last one of the start, or one later.
     is_confirmed: bool,
     /// Log-likelihood ratios of the last frames to the background at the estimate, nats, and what each frame adds to the one before.
     log_ratios: VecDeque<(f64, f64)>,
@@ -222,34 +222,18 @@ where
         self.test_alternatives(&mut relocalization, &frame, (share, log_evidence), rng)?;
         let mut buffer = self.buffer.clone();
         buffer.push(newest, self.params.search.n_buffered_frames);
-        let is_best = self.propose_places(&buffer, &mut present, &mut relocalization, rng)?;
+        let is_certain = self.search_places(&buffer, &mut present, &mut relocalization, rng)?;
         let has_moved = relocalization.decide(&mut present);
         if has_moved {
             present.set_max_particles(self.params.max_particles);
         }
-        self.since_search = if is_best.is_some() { 0.0 } else { self.since_search + self.delta.seconds };
-        let is_replaced =
-            has_moved || (self.n_updates < self.params.search.n_buffered_frames && is_best == Some(false));
-        self.is_confirmed = !is_replaced && (self.is_confirmed || is_best == Some(true));
+        self.since_search = if is_certain.is_some() { 0.0 } else { self.since_search + self.delta.seconds };
+        let is_start = self.n_updates < self.params.search.n_buffered_frames;
+        let confirmed = is_certain.filter(|is_certain| *is_certain || is_start);
+        self.is_confirmed = !has_moved && confirmed.unwrap_or(self.is_confirmed);
         (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
         self.remember_frame(light_before, share);
         self.outcome()
-    }
-
-    /// Compares the alternatives with the present place by the frame.
-    fn test_alternatives<R: Rng + ?Sized>(
-        &self,
-        relocalization: &mut RelocalizationTest<ColorFilter<SunAndShade<T>>>,
-        frame: &PreparedFrame<'_, L>,
-        (share, log_evidence_here): (f64, f64),
-        rng: &mut R,
-    ) -> Result<(), ColorModelError> {
-        let log_evidence =
-            |alternative: &mut ColorFilter<SunAndShade<T>>| match self.step(alternative, frame, rng) {
-                Ok(()) => share * alternative.weighing.log_evidence,
-                Err(_) => f64::NEG_INFINITY,
-            };
-        Ok(relocalization.observe(share * log_evidence_here, log_evidence)?)
     }
 
     /// Counts the frame; keeps its light and its evidence for the map as long as the buffer keeps the frame.
@@ -264,7 +248,7 @@ where
     }
 
     /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
-    fn step<R: Rng + ?Sized>(
+    pub(super) fn step<R: Rng + ?Sized>(
         &self,
         filter: &mut ColorFilter<SunAndShade<T>>,
         frame: &PreparedFrame<'_, L>,
@@ -277,70 +261,6 @@ where
         filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
     }
 
-    /// Searches if it is time to: at the start where the start allows, later anywhere. Returns whether the present place is the best one.
-    fn propose_places<R: Rng + ?Sized>(
-        &self,
-        buffer: &FrameBuffer,
-        present: &mut ColorFilter<SunAndShade<T>>,
-        relocalization: &mut RelocalizationTest<ColorFilter<SunAndShade<T>>>,
-        rng: &mut R,
-    ) -> Result<Option<bool>, ColorModelError> {
-        let params = &self.params.search;
-        let (n_frames, is_first) = (self.n_updates + 1, self.n_updates == 0);
-        let is_start = n_frames <= params.n_buffered_frames;
-        let is_late = self.since_search + self.delta.seconds >= params.search_interval;
-        let is_due = if is_start { n_frames.is_power_of_two() } else { is_late };
-        let is_on = !self.params.relocalization.is_off();
-        if params.samples_per_place == 0.0 || !is_due || !(is_start || is_on) {
-            return Ok(None);
-        }
-        let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
-        let frames = buffer.frames();
-        // Once the view has turned by a tile, its tiles show something else.
-        let tile = f64::from(self.params.pixels.tile_pixels) / self.camera.fx();
-        let shares = frames.windows(2).map(|pair| (pair[0].view_change(&pair[1]) / tile).min(1.0));
-        let shares = std::iter::once(1.0).chain(shares).collect();
-        let search = Search::new(
-            self.scene(&()),
-            (&self.area, start),
-            &self.params,
-            [&self.prior, self.lights.front().unwrap_or(&self.prior)],
-            (frames, shares),
-        )?;
-        let here =
-            |pose: PoseEstimate| CameraLocation { body: *pose.pose.mean(), error: present.camera_error() };
-        let here = if is_first { None } else { Some(here(present.estimate()?)) };
-        let mut found = search.run(here, rng)?;
-        let known = found.iter().find(|one| one.is_known).map(|one| (one.place, one.log_evidence));
-        let is_best = known
-            .is_some_and(|(place, _)| found.first().is_some_and(|best| is_same_place(&place, &best.place)));
-        if is_start {
-            let best = found.remove(0);
-            // The particles of a known place have seen every frame: they know more than the search.
-            if !best.is_known {
-                *present = best.filter;
-            }
-            present.set_max_particles(self.params.max_particles);
-            let even = found.into_iter().map(|one| (one.filter, one.log_evidence - best.log_evidence));
-            relocalization.start(even.filter(|(_, ratio)| ratio.is_finite()))?;
-        } else if let Some((place, log_evidence)) = known {
-            let is_tracked = |one: &Found<SunAndShade<T>>| {
-                let others =
-                    relocalization.alternatives().iter().filter_map(|other| other.hypothesis.estimate().ok());
-                is_same_place(&place, &one.place)
-                    || others.into_iter().any(|other| is_same_place(other.pose.mean(), &one.place))
-            };
-            found.retain(|one| !is_tracked(one) && one.log_evidence > log_evidence);
-            let prior = 1.0 / self.area.n_places() as f64;
-            relocalization.propose(found.into_iter().map(|one| RelocalizationCandidate {
-                hypothesis: one.filter,
-                prior,
-                log_likelihood_ratio: one.log_evidence - log_evidence,
-            }))?;
-        }
-        Ok(Some(is_best))
-    }
-
     /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`: what is not on the map, as another robot,
     /// stays in view until the camera has turned by its field of view, and is one error until then.
     fn independent_share(&self, angle: f64) -> f64 {
@@ -349,7 +269,7 @@ where
         (angle / field_of_view).min(1.0)
     }
 
-    fn scene<'a, K>(&'a self, likelihood: &'a K) -> Scene<'a, K> {
+    pub(super) fn scene<'a, K>(&'a self, likelihood: &'a K) -> Scene<'a, K> {
         Scene {
             map: &self.map,
             camera: self.camera,

@@ -193,16 +193,17 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         dominant_cluster(&self.poses().collect::<Vec<_>>()).ok_or(ColorModelError::NoPose)
     }
 
-    /// Mean error of the camera.
-    pub(crate) fn camera_error(&self) -> CameraPoseError {
+    /// The estimate with the mean error of the camera.
+    pub(crate) fn location(&self) -> Result<CameraLocation, ColorModelError> {
         let weighted = self.particles.iter().zip(self.weights.as_slice());
-        weighted.fold(CameraPoseError::default(), |mean, (particle, weight)| {
+        let error = weighted.fold(CameraPoseError::default(), |mean, (particle, weight)| {
             let error = &particle.state.sampled.error;
             CameraPoseError {
                 rotation: mean.rotation + error.rotation * *weight,
                 height: mean.height + error.height * weight,
             }
-        })
+        });
+        Ok(CameraLocation { body: *self.estimate()?.pose.mean(), error })
     }
 
     /// Body poses with weights.

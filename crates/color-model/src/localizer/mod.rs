@@ -10,6 +10,7 @@ mod frame;
 mod odometry;
 mod outcome;
 mod params;
+mod places;
 mod search;
 
 pub use camera::{CameraLocation, CameraPoseError, CameraPoseNoise};

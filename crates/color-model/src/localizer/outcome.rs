@@ -29,9 +29,9 @@ pub struct FrameOutcome {
 /// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalizationStatus {
-    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place. A second search found no better one.
+    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place. A second search found it again and was certain of it.
     Tracking,
-    /// Several places, one that is wider, or one that no second search has confirmed.
+    /// Several places, one that is wider, or one of which no search was certain.
     Ambiguous,
     /// The last frames together do not tell the map at the estimate from the background with 95 % probability. Do not use the pose.
     Lost,

@@ -13,7 +13,7 @@ pub(super) struct Candidate {
     /// Of each frame that was weighed, its index and its log-likelihood in the light.
     pub(super) log_likelihoods: Vec<(usize, LogWeight)>,
     pub(super) steps: Steps,
-    /// The place that was known before the search, if the candidate started there; it stays there.
+    /// The place that a filter knew before the search, if the candidate started there; it stays there.
     pub(super) known: Option<Pose2<f64>>,
 }
 
@@ -68,7 +68,7 @@ impl Candidate {
     }
 }
 
-/// Keeps the `n` best that are at least a `distance` (m and rad) from each other, the best first, and the known one.
+/// Keeps the `n` best that are at least a `distance` (m and rad) from each other, the best first, and the known ones.
 pub(super) fn retain_distant(candidates: &mut Vec<Candidate>, n: usize, distance: f64) {
     candidates.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     let mut kept: Vec<Candidate> = Vec::new();

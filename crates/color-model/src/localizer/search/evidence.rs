@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     ColorModelError, LightingTracker, PixelLikelihoodFrame, PixelSums, TileSums,
-    likelihood::{LightOfTiles, TileLight, TileLikelihood, gather_tiles, or_hidden},
+    likelihood::{LightOfTiles, PlaceEvidence, TileLight, TileLikelihood, gather_tiles, or_hidden},
     localizer::{LocalizerParams, buffer::BufferedFrame, camera::CameraLocation, frame::Scene},
 };
 
@@ -226,6 +226,21 @@ impl<T: LightingTracker> Evidence<'_, T> {
     fn log_prior(&self, candidate: &Candidate) -> LogWeight {
         let first = self.locations(candidate).first().map_or(0.0, |first| self.start.log_prior(&first.body));
         first + candidate.trajectory.log_prior()
+    }
+
+    /// The evidence of a candidate, with its tiles.
+    pub(super) fn of_tiles(&self, candidate: &Candidate) -> PlaceEvidence {
+        let (mut scratch, finest) = (self.scratch(), self.levels.len() - 1);
+        self.gather(&mut scratch, candidate, Effort { level: finest, n_frames: self.frames.len() });
+        let Scratch { tiles, gathered, .. } = &mut scratch;
+        tiles.weigh(&candidate.light.lights);
+        let (mut evidence, mut start) = (PlaceEvidence::new(candidate.log_evidence), 0);
+        for GatheredFrame { index, end, independent_share } in gathered {
+            let (image, lights) = (&self.levels[finest].tiles[*index], fitted_light(&candidate.light.lights));
+            evidence.add_tiles((*index, *independent_share), tiles.gains(image, lights, start..*end));
+            start = *end;
+        }
+        evidence
     }
 
     /// The different trackers.

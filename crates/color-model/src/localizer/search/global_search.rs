@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
-use wayfix_estimation_traits::{LogWeight, Pose2};
+use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
 use super::{
@@ -16,6 +16,7 @@ use super::{
 };
 use crate::{
     ColorModelError, LightingTracker, PixelClassifier,
+    likelihood::PlaceEvidence,
     localizer::{
         LocalizerParams,
         buffer::BufferedFrame,
@@ -57,10 +58,10 @@ fn first_pose_step(round: u32) -> f64 {
 pub(crate) struct Found<T> {
     pub(crate) filter: ColorFilter<T>,
     pub(crate) place: Pose2<f64>,
-    /// Log-likelihood of all frames, each by what it adds to the one before, with the prior of the trajectory, nats.
-    pub(crate) log_evidence: LogWeight,
-    /// Whether it is the place that was known before the search.
-    pub(crate) is_known: bool,
+    /// Of all frames, each by what it adds to the one before, with the prior of the trajectory.
+    pub(crate) evidence: PlaceEvidence,
+    /// Whether it was the present place before the search.
+    pub(crate) is_present: bool,
 }
 
 impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
@@ -97,10 +98,10 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         })
     }
 
-    /// The places that explain the frames best, the best first, among those that the start allows, and the `known` one.
+    /// The places that explain the frames best, the best first, among those that the start allows and those of filters, of which the first is at the present place.
     pub(crate) fn run<R: Rng + ?Sized>(
         &self,
-        known: Option<CameraLocation>,
+        known: &[CameraLocation],
         rng: &mut R,
     ) -> Result<Vec<Found<T>>, ColorModelError> {
         let params = &self.evidence.params.search;
@@ -109,7 +110,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut candidates = self.each(drawn, rng, |scratch, candidate, _| {
             self.evidence.fit(scratch, candidate, rough, false);
         })?;
-        candidates.extend(known.map(|at| self.known(&at)));
+        candidates.extend(known.iter().map(|at| self.known(at)));
         retain_distant(&mut candidates, params.n_refined_trajectories, self.peak_width());
         for round in 0..N_ROUNDS {
             let n_frames = if round + 1 < N_ROUNDS { 2 << round } else { self.evidence.frames.len() };
@@ -128,6 +129,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             let n_kept = params.n_refined_trajectories >> (2 * (round + 1)).min(2 * N_ROUNDS - 2);
             retain_distant(&mut candidates, n_kept, self.peak_width());
         }
+        let present = known.first().map(|at| at.body);
+        candidates.iter_mut().for_each(|one| one.known = one.known.filter(|place| Some(*place) == present));
         retain_distant(&mut candidates, usize::MAX, PLACE_RADIUS);
         let n_particles = self.evidence.params.max_particles.div_ceil(candidates.len().max(1));
         candidates.iter().map(|candidate| self.found(candidate, n_particles, rng)).collect()
@@ -158,7 +161,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         })
     }
 
-    /// The place that was known before the search.
+    /// A place that a filter knows.
     fn known(&self, location: &CameraLocation) -> Candidate {
         let Evidence { params, frames, .. } = &self.evidence;
         let trajectory = Trajectory::through(&location.body, frames.len(), frames)
@@ -266,8 +269,8 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         Ok(Found {
             filter,
             place: candidate.trajectory.newest,
-            log_evidence: candidate.log_evidence,
-            is_known: candidate.known.is_some(),
+            evidence: self.evidence.of_tiles(candidate),
+            is_present: candidate.known.is_some(),
         })
     }
 
