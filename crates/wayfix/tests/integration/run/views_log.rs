@@ -136,3 +136,13 @@ fn a_drive_without_a_table_is_a_route() {
     assert!(outcome.stderr.contains("each picture is one place on"));
     assert!(outcome.metric("confidence_mean") > 1.0 / 13.0);
 }
+
+#[test]
+fn a_long_drive_is_judged_by_all_frames_and_pictures_by_some() {
+    let scratch = Scratch::new();
+    let (learned, long) = (learned(&scratch), folder(&scratch, "drive", &drive(6, 1300)));
+    let outcome = run(&long, &learned, &[]);
+    assert_eq!(["n_frames", "n_frames_with_truth"].map(|name| outcome.metric(name)), [1300.0; 2]);
+    let note = "pictures are of one in 2 of 1300";
+    assert!(outcome.stdout.contains(note) || outcome.stderr.contains(note), "{}", outcome.stdout);
+}
