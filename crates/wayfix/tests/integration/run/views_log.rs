@@ -141,8 +141,9 @@ fn a_drive_without_a_table_is_a_route() {
 fn a_long_drive_is_judged_by_all_frames_and_pictures_by_some() {
     let scratch = Scratch::new();
     let (learned, long) = (learned(&scratch), folder(&scratch, "drive", &drive(6, 1300)));
-    let outcome = run(&long, &learned, &[]);
+    let out = scratch.path("out");
+    let outcome = run(&long, &learned, &[OsStr::new("--out"), out.as_os_str()]);
     assert_eq!(["n_frames", "n_frames_with_truth"].map(|name| outcome.metric(name)), [1300.0; 2]);
-    let note = "pictures are of one in 2 of 1300";
-    assert!(outcome.stdout.contains(note) || outcome.stderr.contains(note), "{}", outcome.stdout);
+    let report = fs::read_to_string(out.join("report.json")).expect("a report");
+    assert!(report.contains("pictures are of one in 2 of 1300"), "{report}");
 }
