@@ -13,6 +13,9 @@ pub struct ColorDrawingState {
     path: PathPieces,
 }
 
+/// Particles that are written: with all of them the file would be larger than twice the log.
+const MOST_PARTICLES: usize = 200;
+
 impl system::EstimateDrawer for ColorDrawingState {
     type System = ColorSystem;
 
@@ -29,7 +32,9 @@ impl system::EstimateDrawer for ColorDrawingState {
         self.path.push(stamp, pose, writer)?;
         write_robot(writer, stamp, pose, frame.pose.covariance())?;
         if let Some(localizer) = system.localizer() {
-            let points: Vec<[f64; 2]> = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
+            let every = localizer.poses().count().div_ceil(MOST_PARTICLES).max(1);
+            let poses = localizer.poses().step_by(every);
+            let points: Vec<[f64; 2]> = poses.map(|(pose, _)| [pose.x(), pose.y()]).collect();
             writer.point_cloud("/estimate/particles", stamp, world, &points)?;
         }
         Ok(())
