@@ -5,12 +5,14 @@
 //! | Do odometry and measurements overlap in time? | [`check_overlap`] |
 //! | Can a robot move like that? | [`IncrementPlausibilityCheck`], [`check_velocity`] |
 //! | What moved a robot with a held velocity command? | [`HeldVelocity`] |
+//! | How did a robot move between two times? | [`motion_between`] |
 //! | Is the odometry late? | [`TurnHistory`], [`without_odometry_delay`] |
 //! | Is the compass mirrored? | [`HeadingSignTest`] |
 
 mod events;
 mod heading_sign;
 mod held_velocity;
+mod motion_between;
 mod odometry_delay;
 mod odometry_lag;
 mod overlap;
@@ -20,6 +22,7 @@ mod plausible_increment;
 pub use events::{EventCounts, RefusedRecord};
 pub use heading_sign::HeadingSignTest;
 pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
+pub use motion_between::motion_between;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::TurnHistory;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};

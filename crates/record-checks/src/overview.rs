@@ -11,11 +11,12 @@ use wayfix_sensor_log::{
 /// Records that an overview keeps whole, from the beginning of the log.
 pub const OVERVIEW_HEAD: usize = 1 << 15;
 
-/// What must be known of a log before it is processed: its beginning, all truth, the first detection of each landmark, and the first and last record of
-/// each kind.
+/// Records that an overview keeps from the first of each kind on; the first truth after it stays too.
+const AFTER_FIRST: usize = 1 << 10;
+
+/// What must be known of a log before it is processed: its beginning, its true map, the first detection of each landmark, and the first and last records of
+/// each kind, with the truth around them.
 /// Scans have no ranges, and images no pixels.
-///
-/// Memory grows with the log by its truth only.
 #[derive(Clone, Debug, Default)]
 pub struct LogOverview {
     /// In the order of the log.
@@ -49,11 +50,19 @@ impl LogOverview {
         let mut overview = Self::default();
         let mut seen: BTreeSet<u32> = BTreeSet::new();
         let (mut has_moved, mut kinds) = (None, HashSet::new());
+        // Up to here all records are kept.
+        let (mut head, mut wants_truth) = (head, false);
         // The last record of each kind that is not kept.
         let mut last: Vec<(usize, Record)> = Vec::new();
         for Record { stamp, data } in log.by_ref() {
             let kind = discriminant(&data);
-            let is_new = kinds.insert(kind) | has_new_landmark(&data, &mut seen) || has_truth(&data);
+            if kinds.insert(kind) && overview.n_records >= head {
+                overview.insert(&mut last);
+                (head, wants_truth) = (overview.n_records + AFTER_FIRST, true);
+            }
+            let is_new = has_new_landmark(&data, &mut seen)
+                || matches!(data, RecordData::TrueLandmark(_) | RecordData::TrueWall(_))
+                || has_truth(&data) && std::mem::take(&mut wants_truth);
             overview.n_images += usize::from(matches!(data, RecordData::Image(_)));
             let data = if overview.n_images > n_images { without_pixels(data) } else { data };
             let record = Record { stamp, data: without_ranges(data) };
@@ -67,11 +76,16 @@ impl LogOverview {
             }
             overview.n_records += 1;
         }
-        for (place, record) in last.into_iter().rev() {
-            overview.records.insert(place, record);
-        }
+        overview.insert(&mut last);
         overview.read = log.report().clone();
         overview
+    }
+
+    /// Inserts records at their places.
+    fn insert(&mut self, last: &mut Vec<(usize, Record)>) {
+        for (place, record) in last.drain(..).rev() {
+            self.records.insert(place, record);
+        }
     }
 }
 
@@ -86,8 +100,8 @@ fn moves(data: &RecordData) -> Option<bool> {
 }
 
 fn has_truth(data: &RecordData) -> bool {
-    use RecordData::{EstimatedPose, TrueLandmark, TruePose, TruePosition, TrueWall};
-    matches!(data, EstimatedPose(_) | TrueLandmark(_) | TruePose(_) | TruePosition(_) | TrueWall(_))
+    use RecordData::{EstimatedPose, TruePose, TruePosition};
+    matches!(data, EstimatedPose(_) | TruePose(_) | TruePosition(_))
 }
 
 fn has_new_landmark(data: &RecordData, seen: &mut BTreeSet<u32>) -> bool {

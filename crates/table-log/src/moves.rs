@@ -95,11 +95,18 @@ pub struct MovedFrame {
     pub name: String,
     /// Its row of the table; without a table the move is one column on. `None` if the table has no usable row for it.
     pub row: Option<MoveRow>,
-    /// The picture; `None` if the file is unreadable. The move stays one.
-    pub image: Option<EncodedImage>,
+    /// The file; `None` if it is unreadable. The move stays one.
+    path: Option<PathBuf>,
 }
 
-/// A folder of frames with moves, in the order of the numbers in their names.
+impl MovedFrame {
+    /// Reads the picture; `None` if the file is unreadable.
+    pub fn image(&self) -> Option<EncodedImage> {
+        read_image(self.path.as_ref()?).ok()
+    }
+}
+
+/// A folder of frames with moves, in the order of the numbers in their names. Its pictures are read when they are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedFrameFolder {
     /// All frames.
@@ -126,15 +133,15 @@ impl MovedFrameFolder {
         };
         let mut frames = Vec::new();
         for (index, (path, row)) in files.iter().zip(rows).enumerate() {
-            let (name, image) = (name_of(path), read_image(path));
-            if let Err(reason) = &image {
-                let (file, reason) = (name.clone(), reason.clone());
-                let kind = RowProblemKind::UnreadableImage;
+            let (name, is_readable) = (name_of(path), read_image(path).map(drop));
+            let path = is_readable.is_ok().then(|| path.clone());
+            if let Err(reason) = is_readable {
+                let (file, kind) = (name.clone(), RowProblemKind::UnreadableImage);
                 read.add(RowProblem { file, row: index as u64 + 1, kind, reason });
             }
-            frames.push(MovedFrame { name, row, image: image.ok() });
+            frames.push(MovedFrame { name, row, path });
         }
-        if frames.iter().all(|frame| frame.image.is_none()) {
+        if frames.iter().all(|frame| frame.path.is_none()) {
             return Err(RecordingError::Nothing {
                 path: folder.to_owned(),
                 what: "readable PNG or JPEG images",

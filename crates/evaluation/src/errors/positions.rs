@@ -1,10 +1,12 @@
 use nalgebra::Vector2;
-use wayfix_sensor_log::{Record, RecordData, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp, TruePosition};
+
+use super::stamped_truth::StampedTruth;
 
 /// True positions of one point of the robot over time, without headings: a GPS antenna.
 #[derive(Clone, Debug, Default)]
 pub struct TruePositions {
-    fixes: Vec<(Stamp, Vector2<f64>)>,
+    fixes: StampedTruth<Vector2<f64>>,
 }
 
 /// Maximum time between a fix and a pose that are compared, s; fixes usually come once a second.
@@ -13,33 +15,41 @@ const LONGEST_WAIT: f64 = 0.3;
 impl TruePositions {
     /// The true positions among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
-        let mut fixes: Vec<(Stamp, Vector2<f64>)> = Vec::new();
-        for record in records {
-            if let RecordData::TruePosition(fix) = &record.data {
-                let later = fixes.last().is_none_or(|(last, _)| *last < record.stamp);
-                if later && fix.x.is_finite() && fix.y.is_finite() {
-                    fixes.push((record.stamp, Vector2::new(fix.x, fix.y)));
-                }
+        let mut positions = Self::default();
+        records.iter().for_each(|record| positions.push(record));
+        positions
+    }
+
+    fn push(&mut self, record: &Record) {
+        match record.data {
+            RecordData::TruePosition(TruePosition { x, y }) if x.is_finite() && y.is_finite() => {
+                self.fixes.push(record.stamp, Vector2::new(x, y));
             }
+            _ => {}
         }
-        Self { fixes }
+    }
+
+    /// Takes the next record of a log. Of a long log only fixes around the stamps of `estimates` are kept, which are those so far.
+    pub fn take(&mut self, record: &Record, estimates: impl Iterator<Item = Stamp>) {
+        self.push(record);
+        self.fixes.thin(record.stamp, estimates);
     }
 
     /// Last stamp with a fix.
     pub fn last_stamp(&self) -> Option<Stamp> {
-        self.fixes.last().map(|(stamp, _)| *stamp)
+        self.fixes.values().last().map(|(stamp, _)| *stamp)
     }
 
     /// All fixes.
     pub fn fixes(&self) -> &[(Stamp, Vector2<f64>)] {
-        &self.fixes
+        self.fixes.values()
     }
 
     /// The fix nearest in time, if within 0.3 s.
     pub fn near(&self, stamp: Stamp) -> Option<Vector2<f64>> {
-        let after = self.fixes.partition_point(|(known, _)| *known < stamp);
+        let (after, fixes) = (self.fixes.at_or_after(stamp), self.fixes.values());
         let distance = |known: Stamp| known.seconds_since(stamp).abs();
-        let neighbours = self.fixes[after.saturating_sub(1)..self.fixes.len().min(after + 1)].iter();
+        let neighbours = fixes[after.saturating_sub(1)..fixes.len().min(after + 1)].iter();
         let (known, position) = neighbours.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
         (distance(*known) <= LONGEST_WAIT).then_some(*position)
     }
@@ -47,8 +57,6 @@ impl TruePositions {
 
 #[cfg(test)]
 mod tests {
-    use wayfix_sensor_log::TruePosition;
-
     use super::*;
 
     #[test]

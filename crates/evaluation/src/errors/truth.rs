@@ -2,12 +2,12 @@ use nalgebra::Matrix3;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::{PoseWithTruth, truth_noise::truth_noise};
+use super::{PoseWithTruth, stamped_truth::StampedTruth, truth_noise::truth_noise};
 
 /// Reference poses over time: true ones, or estimates of another program.
 #[derive(Clone, Debug, Default)]
 pub struct ReferencePath {
-    poses: Vec<(Stamp, Pose2<f64>)>,
+    poses: StampedTruth<Pose2<f64>>,
     noise: Matrix3<f64>,
     is_estimate: bool,
 }
@@ -18,37 +18,47 @@ pub const LONGEST_GAP: f64 = 0.5;
 impl ReferencePath {
     /// The true poses among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
-        Self::from_poses(records, |data| match data {
-            RecordData::TruePose(pose) => Some(pose),
-            _ => None,
-        })
-    }
-
-    fn from_poses(records: &[Record], pose_of: impl Fn(&RecordData) -> Option<&Pose2<f64>>) -> Self {
-        let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
-        for record in records {
-            if let Some(pose) = pose_of(&record.data) {
-                let later = poses.last().is_none_or(|(last, _)| *last < record.stamp);
-                if later && pose.is_finite() {
-                    poses.push((record.stamp, *pose));
-                }
-            }
-        }
-        let noise = truth_noise(&poses, records);
-        Self { poses, noise, is_estimate: false }
+        Self::of_kind(false, records)
     }
 
     /// The true poses, or, if the log has none, the estimates of another program.
     pub fn from_records_or_estimates(records: &[Record]) -> Self {
         let truth = Self::from_records(records);
-        if !truth.poses.is_empty() {
+        if !truth.is_empty() {
             return truth;
         }
-        let track = Self::from_poses(records, |data| match data {
-            RecordData::EstimatedPose(pose) => Some(pose),
-            _ => None,
-        });
-        Self { is_estimate: !track.poses.is_empty(), ..track }
+        let track = Self::of_kind(true, records);
+        Self { is_estimate: !track.is_empty(), ..track }
+    }
+
+    fn of_kind(is_estimate: bool, records: &[Record]) -> Self {
+        let mut path = Self { is_estimate, ..Self::default() };
+        records.iter().for_each(|record| path.push(record));
+        path.noise = truth_noise(path.poses.values(), records);
+        path
+    }
+
+    fn push(&mut self, record: &Record) {
+        match record.data {
+            RecordData::TruePose(pose) if !self.is_estimate && pose.is_finite() => {
+                self.poses.push(record.stamp, pose);
+            }
+            RecordData::EstimatedPose(pose) if self.is_estimate && pose.is_finite() => {
+                self.poses.push(record.stamp, pose);
+            }
+            _ => {}
+        }
+    }
+
+    /// The path before the first record of its log: [`take`](Self::take) gives it the poses.
+    pub fn restarted(&self) -> Self {
+        Self { poses: StampedTruth::default(), ..*self }
+    }
+
+    /// Takes the next record of a log. Of a long log only poses around the stamps of `estimates` are kept, which are those so far.
+    pub fn take(&mut self, record: &Record, estimates: impl Iterator<Item = Stamp>) {
+        self.push(record);
+        self.poses.thin(record.stamp, estimates);
     }
 
     /// Covariance of the errors of the truth, `(x, y, θ)` in the body frame; zero if the log does not reveal any.
@@ -63,7 +73,7 @@ impl ReferencePath {
 
     /// Whether there are no poses.
     pub fn is_empty(&self) -> bool {
-        self.poses.is_empty()
+        self.poses.values().is_empty()
     }
 
     /// Pairs an estimate with the truth at its stamp. Adds the noise of the truth to the covariance.
@@ -79,27 +89,27 @@ impl ReferencePath {
 
     /// Last stamp with a true pose.
     pub fn last_stamp(&self) -> Option<Stamp> {
-        self.poses.last().map(|(stamp, _)| *stamp)
+        self.poses.values().last().map(|(stamp, _)| *stamp)
     }
 
     /// The first true pose at or after a stamp.
     pub fn first_after(&self, stamp: Stamp) -> Option<(Stamp, Pose2<f64>)> {
-        self.poses.get(self.poses.partition_point(|(known, _)| *known < stamp)).copied()
+        self.poses.values().get(self.poses.at_or_after(stamp)).copied()
     }
 
     /// First and last stamp with a true pose.
     pub fn span(&self) -> Option<(Stamp, Stamp)> {
-        Some((self.poses.first()?.0, self.poses.last()?.0))
+        Some((self.poses.values().first()?.0, self.last_stamp()?))
     }
 
     /// The pose at `stamp`: interpolated linearly, headings along the shorter arc, never across more than half a second.
     pub fn at(&self, stamp: Stamp) -> Option<Pose2<f64>> {
-        let after = self.poses.partition_point(|(known, _)| *known < stamp);
-        let (late, late_pose) = self.poses.get(after)?;
+        let (after, poses) = (self.poses.at_or_after(stamp), self.poses.values());
+        let (late, late_pose) = poses.get(after)?;
         if *late == stamp {
             return Some(*late_pose);
         }
-        let (early, early_pose) = self.poses.get(after.checked_sub(1)?)?;
+        let (early, early_pose) = poses.get(after.checked_sub(1)?)?;
         let gap = late.seconds_since(*early);
         if gap > LONGEST_GAP {
             return None;

@@ -46,12 +46,11 @@ impl<T> Decimated<T> {
         Ok(())
     }
 
-    /// Says that figures and pictures are of some values only, if not all are kept.
-    pub fn note(&self) -> Option<String> {
+    /// Says that something, for example figures and pictures, is of some values only, if not all are kept.
+    pub fn note(&self, what: &str) -> Option<String> {
         let Self { stride, n_seen, .. } = self;
-        (*stride > 1).then(|| {
-            format!("The log is long: figures and pictures are of one in {stride} of {n_seen} estimates.")
-        })
+        (*stride > 1)
+            .then(|| format!("The log is long: {what} are of one in {stride} of {n_seen} estimates."))
     }
 
     /// The kept values, in order.
@@ -85,7 +84,8 @@ mod tests {
             assert!((kept.len() + 1) * stride > value, "the newest are there: {kept:?} of {value}");
         }
         assert!(decimated.kept().len() >= 5);
-        assert!(decimated.note().unwrap().contains("one in 128 of 1000"), "{:?}", decimated.note());
-        assert_eq!(Decimated::<u8>::new(10).note(), None);
+        let note = decimated.note("figures").unwrap();
+        assert!(note.contains("figures are of one in 128 of 1000"), "{note}");
+        assert_eq!(Decimated::<u8>::new(10).note("figures"), None);
     }
 }

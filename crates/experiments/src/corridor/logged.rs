@@ -18,9 +18,9 @@ pub(crate) fn run_logged(folder: &Path) -> Result<ReportRun> {
     let params = ViewsParams::default();
     let mut all = ReportRun { name: "corridor-log".to_owned(), ..ReportRun::default() };
     for feature in DescriptorKind::ALL {
-        let run =
-            LoggedViews::localize(&learned, &drive, None, feature, &params, || ControlFlow::Continue(()))?;
-        let ReportRun { metrics, events, .. } = run.summarize(&params);
+        let go_on = |_: &_, _: &_, _: Option<&_>| ControlFlow::Continue(());
+        let run = LoggedViews::localize(&learned, &drive, None, feature, &params, go_on)?;
+        let ReportRun { metrics, events, .. } = run.summarize();
         let named = |metric: Metric| Metric { name: format!("{}_{}", feature.name(), metric.name), ..metric };
         all.metrics.extend(metrics.into_iter().map(named));
         all.events.extend(events.into_iter().map(|(name, n)| (format!("{}_{name}", feature.name()), n)));

@@ -28,7 +28,7 @@ pub fn summarize(run: &mut CmlRun) -> ReportRun {
     ];
     let mut notes = vec![task(run.task).to_owned()];
     notes.extend(run.notes.iter().cloned());
-    notes.extend(sample.note());
+    notes.extend(sample.note("figures and pictures"));
     ReportRun { metrics, timings, events: run.system.events().counts(), notes, ..ReportRun::default() }
 }
 

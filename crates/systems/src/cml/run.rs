@@ -83,7 +83,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     start: CmlStartPose,
     params: &CmlParams,
     seed: u64,
-    observe: impl FnMut(RunStep<'_, CmlSystem>),
+    mut observe: impl FnMut(RunStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
     if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
@@ -93,7 +93,11 @@ pub fn run_streamed<R: Borrow<Record>>(
         system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
-    drive(&mut system, records, observe);
+    let mut truth = ReferencePath::from_records(&plan.records).restarted();
+    drive(&mut system, records, |step| {
+        truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
+        observe(step);
+    });
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");
@@ -102,7 +106,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     Ok(CmlRun {
         task,
         system,
-        truth: ReferencePath::from_records(&plan.records),
+        truth,
         headings_are_measured: plan.headings_are_measured,
         notes: plan.notes.clone(),
     })

@@ -1,8 +1,7 @@
-use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::ColorSystem;
-use crate::system::{self, EstimateRecorder, EstimateWriter, write_robot};
+use crate::system::{self, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawingState>;
@@ -11,11 +10,11 @@ pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawingState>;
 #[derive(Default)]
 pub struct ColorDrawingState {
     n_written: usize,
-    path: Vec<Pose2<f64>>,
+    path: PathPieces,
 }
 
-/// Number of frames between two writes of the whole path.
-const PATH_PERIOD: usize = 20;
+/// Particles that are written: with all of them the file would be larger than twice the log.
+const MOST_PARTICLES: usize = 200;
 
 impl system::EstimateDrawer for ColorDrawingState {
     type System = ColorSystem;
@@ -26,17 +25,17 @@ impl system::EstimateDrawer for ColorDrawingState {
         system: &ColorSystem,
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
-        let Some(frame) = system.frames().get(self.n_written) else { return Ok(()) };
-        self.n_written += 1;
+        let n_frames = system.sample().n_seen();
+        let Some(frame) = system.latest().filter(|_| self.n_written < n_frames) else { return Ok(()) };
+        self.n_written = n_frames;
         let (stamp, pose, world) = (frame.stamp, frame.pose.mean(), topics::WORLD_FRAME);
-        self.path.push(*pose);
+        self.path.push(stamp, pose, writer)?;
         write_robot(writer, stamp, pose, frame.pose.covariance())?;
         if let Some(localizer) = system.localizer() {
-            let points: Vec<[f64; 2]> = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
+            let every = localizer.poses().count().div_ceil(MOST_PARTICLES).max(1);
+            let poses = localizer.poses().step_by(every);
+            let points: Vec<[f64; 2]> = poses.map(|(pose, _)| [pose.x(), pose.y()]).collect();
             writer.point_cloud("/estimate/particles", stamp, world, &points)?;
-        }
-        if self.path.len() % PATH_PERIOD == 1 {
-            writer.poses_in_frame("/estimate/path", stamp, world, &self.path)?;
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ mod plots;
 pub mod priors;
 mod run;
 mod system;
+mod totals;
 
 pub use estimates::{ColorDrawingState, ColorEstimateRecorder};
 pub use figures::summarize;

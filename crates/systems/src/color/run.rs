@@ -9,7 +9,7 @@ use wayfix_color_model::LightingFilterBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose};
+use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose, totals::ColorTotals};
 use crate::system::TrueStartPose;
 use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
@@ -23,6 +23,7 @@ pub struct ColorRun {
     pub system: ColorSystem,
     /// True poses, where the log has them.
     pub truth: ReferencePath,
+    pub(super) totals: ColorTotals,
 }
 
 /// Processes the records of a log with the localizer and shows each step to `observe`.
@@ -59,7 +60,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,
-    observe: impl FnMut(RunStep<'_, ColorSystem>),
+    mut observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
     let Some(first_image) = overview.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
@@ -75,15 +76,21 @@ pub fn run_streamed<R: Borrow<Record>>(
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }
-    drive(&mut system, records, observe);
+    let (mut truth, mut totals) = (truth.restarted(), ColorTotals::default());
+    drive(&mut system, records, |step| {
+        truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
+        totals.take(step.record.stamp, step.system, &truth);
+        observe(step);
+    });
+    totals.compare(None, &truth);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");
     }
-    let frames = system.frames();
-    let estimated = frames.first().zip(frames.last()).map(|(first, last)| (first.stamp, last.stamp));
+    let estimated =
+        system.frames().first().zip(system.latest()).map(|(first, last)| (first.stamp, last.stamp));
     warn_of_no_overlap(system.events(), &truth, estimated);
-    Ok(ColorRun { system, truth })
+    Ok(ColorRun { system, truth, totals })
 }
 
 /// Number of camera frames in a log.
@@ -103,13 +110,10 @@ fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64
 }
 
 impl ColorRun {
-    /// Frames with the true pose at their stamp.
+    /// The [frames](ColorSystem::frames) with the true pose at their stamp.
     pub fn samples(&self) -> Vec<(&ColorFrameResult, PoseWithTruth)> {
-        let sample = |frame: &ColorFrameResult| {
-            let truth = self.truth.at(frame.stamp)?;
-            Some(PoseWithTruth { estimate: *frame.pose.mean(), covariance: *frame.pose.covariance(), truth })
-        };
-        self.system.frames().iter().filter_map(|frame| Some((frame, sample(frame)?))).collect()
+        let frames = self.system.frames().iter();
+        frames.filter_map(|frame| Some((frame, frame.beside(self.truth.at(frame.stamp)?)))).collect()
     }
 
     /// Seconds since the first frame.

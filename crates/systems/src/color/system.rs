@@ -8,11 +8,12 @@ use wayfix_color_model::{
     LocalizationStatus, OdometryNoise, OdometryStep, PixelClassifier, StartPosePrior, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
 
 use super::{ClassificationCounts, ColorSystemParams, tally};
-use crate::system::{EventCounts, IncrementPlausibilityCheck, Stopwatch, System};
+use crate::system::{EventCounts, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System};
 
 /// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +38,8 @@ pub struct ColorSystem {
     pending: Pending,
     plausible: IncrementPlausibilityCheck,
     odometry: Option<Pose2<f64>>,
-    frames: Vec<ColorFrameResult>,
+    frames: Decimated<ColorFrameResult>,
+    latest: Option<ColorFrameResult>,
     table: Option<ColorLookUpTable>,
     events: EventCounts,
 }
@@ -76,6 +78,13 @@ pub struct ColorFrameResult {
     pub step: Duration,
 }
 
+impl ColorFrameResult {
+    /// The estimate beside the truth at its stamp.
+    pub(super) fn beside(&self, truth: Pose2<f64>) -> PoseWithTruth {
+        PoseWithTruth { estimate: *self.pose.mean(), covariance: *self.pose.covariance(), truth }
+    }
+}
+
 type Localizer = ColorLocalizer<LightingFilterBank, OdometryNoise, ImageLikelihoodChoice>;
 
 impl ColorSystem {
@@ -104,15 +113,25 @@ impl ColorSystem {
             pending: Pending::default(),
             plausible: IncrementPlausibilityCheck::default(),
             odometry,
-            frames: Vec::new(),
+            frames: Decimated::new(MOST_ESTIMATES),
+            latest: None,
             table: None,
             events: EventCounts::default(),
         }
     }
 
-    /// Results of all frames so far.
+    /// Results of the frames so far, evenly spaced: all of a short log, at most [`MOST_ESTIMATES`] of a long one.
     pub fn frames(&self) -> &[ColorFrameResult] {
+        self.frames.kept()
+    }
+
+    pub(super) fn sample(&self) -> &Decimated<ColorFrameResult> {
         &self.frames
+    }
+
+    /// Result of the last frame.
+    pub fn latest(&self) -> Option<&ColorFrameResult> {
+        self.latest.as_ref()
     }
 
     /// The localizer; `None` before the first frame.
@@ -189,7 +208,7 @@ impl ColorSystem {
         });
 
         let labelled = self.labelled(stamp, &image);
-        self.frames.push(ColorFrameResult {
+        let result = ColorFrameResult {
             stamp,
             pose: outcome.estimate.pose,
             status: outcome.status,
@@ -201,7 +220,9 @@ impl ColorSystem {
             light_probabilities: outcome.light_probabilities,
             labelled,
             step,
-        });
+        };
+        self.frames.push(result.clone());
+        self.latest = Some(result);
         Ok(())
     }
 

@@ -104,13 +104,10 @@ fn drive_through<R: Borrow<Record>>(
     records: impl IntoIterator<Item = R>,
     observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
-    let true_positions = TruePositions::from_records(overview);
     let last_odometry = overview.iter().rev().find_map(odometry_stamp).unwrap_or_default();
-    let last_truth = truth.last_stamp().or(true_positions.last_stamp());
-    let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
-    let true_map = true_landmarks(overview);
-    let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
-        .through(records, observe);
+    let mut run = SlamRun::new(system, &truth, true_landmarks(overview)).through(records, observe);
+    let last_truth = run.truth.last_stamp().or(run.true_positions.last_stamp());
+    run.evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;
     if is_smoothed && run.smoothed.is_none() {
         let why = run.events().warnings().iter().find(|warning| warning.name == "smoother_failed");

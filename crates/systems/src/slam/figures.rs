@@ -35,7 +35,7 @@ where
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let timings = timings(run.system.stamped_estimates(), run.system.estimator.longest_step);
     let mut summary = ReportRun { metrics, timings, events: run.events().counts(), ..ReportRun::default() };
-    summary.notes.extend(run.system.estimator.stamped_estimates.note());
+    summary.notes.extend(run.system.estimator.stamped_estimates.note("figures and pictures"));
     unobservable_directions(run.system.observability(), &mut summary);
     if let Some(batch) = reference {
         compare_with_batch(&batch, &mut summary);

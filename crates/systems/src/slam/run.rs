@@ -38,13 +38,31 @@ impl<F: FrontEnd, T> SlamRun<F, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
+    /// A run before its first record; `truth` is that of the overview of the log.
+    pub(crate) fn new(system: SlamSystem<F>, truth: &ReferencePath, true_map: T) -> Self {
+        Self {
+            system,
+            truth: truth.restarted(),
+            true_positions: TruePositions::default(),
+            true_map,
+            evaluated_until: Stamp::from_nanoseconds(u64::MAX),
+            smoothed: None,
+        }
+    }
+
     /// Passes records through the system and says what is wrong with the result.
     pub(crate) fn through(
         mut self,
         records: impl IntoIterator<Item = impl Borrow<Record>>,
-        observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
+        mut observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
     ) -> Self {
-        drive(&mut self.system, records, observe);
+        let (truth, positions) = (&mut self.truth, &mut self.true_positions);
+        drive(&mut self.system, records, |step| {
+            let stamps = || step.system.stamped_estimates().iter().map(|estimate| estimate.stamp);
+            truth.take(step.record, stamps());
+            positions.take(step.record, stamps());
+            observe(step);
+        });
         self.take_smoothed();
         let estimates = self.system.stamped_estimates();
         let estimated =

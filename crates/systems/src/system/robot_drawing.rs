@@ -57,7 +57,7 @@ pub(crate) struct PathPieces {
     n_pieces: usize,
 }
 
-/// Poses in a piece.
+/// Poses in a piece; the first ones are shorter, so that a path begins soon.
 const PIECE: usize = 20;
 
 impl PathPieces {
@@ -69,7 +69,7 @@ impl PathPieces {
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         self.piece.push([pose.x(), pose.y()]);
-        if self.piece.len() <= PIECE {
+        if self.piece.len() <= PIECE.min(self.n_pieces + 1) {
             return Ok(());
         }
         let (id, end) = (format!("path {}", self.n_pieces), [pose.x(), pose.y()]);

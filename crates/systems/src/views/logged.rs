@@ -5,24 +5,30 @@ use wayfix_condensation::{
     MostProbableState, PositionGrid, RgbImage, RouteAppearanceModel, RouteAppearanceParams,
     SlipProbabilities, SparseTransition, StateDescriptorTable, View,
 };
-use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_evaluation::{
+    plot::Decimated,
+    report::{Metric, ReportRun},
+};
 use wayfix_sensor_log::EncodedImage;
 use wayfix_table_log::{MoveRow, MoveTable, MovedFrameFolder};
 
 use super::{DescriptorKind, ViewsError, ViewsParams, figures::motion_metrics, system::MAX_HYPOTHESES};
+use crate::system::MOST_ESTIMATES;
 
-/// Beliefs are kept for pictures up to this product of frames and places.
-const MAX_SHOWN: usize = 4_000_000;
+/// Pixels of the picture of all beliefs, at most, in each direction.
+pub(super) const MAX_SIDE: usize = 1200;
 
 /// The belief after a picture of a logged drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedView {
+    /// Number of the frame.
+    pub number: usize,
     /// The most probable place.
     pub best: MostProbableState,
     /// The true place, if the log has it.
     pub truth: Option<usize>,
-    /// Belief over the places; `None` for long drives among many places.
-    pub belief: Option<Vec<f64>>,
+    /// Belief over the places.
+    pub belief: Vec<f64>,
 }
 
 /// A logged drive, localized in learned pictures. [Kasprzak & Szynkiewicz, Sec. 2.2]
@@ -34,10 +40,23 @@ pub struct LoggedViews {
     pub learned: StateDescriptorTable,
     /// Transitions and diffusion, if they were learned from logged moves.
     pub motion: Option<LearnedMotion>,
-    /// One for each frame that was reached, readable or not.
-    pub views: Vec<LoggedView>,
-    tolerance: usize,
+    /// Some of the frames that were reached, readable or not, evenly spaced; none among more than 1,200 places.
+    pub(super) beliefs: Decimated<LoggedView>,
+    /// Frames, and moves between the most probable and the true place.
+    pub(super) errors: Decimated<(usize, usize)>,
+    totals: LoggedTotals,
     events: BTreeMap<String, u64>,
+}
+
+/// Sums over the frames of a drive.
+#[derive(Clone, Copy, Debug, Default)]
+struct LoggedTotals {
+    n: usize,
+    confidence: f64,
+    found: usize,
+    sum: usize,
+    largest: usize,
+    certain_of_wrong: u64,
 }
 
 impl LoggedViews {
@@ -45,7 +64,7 @@ impl LoggedViews {
     ///
     /// Places are those of the learned table, each with at least one picture, else its frames in order: a route. The noise of the features is learned as
     /// [`RouteAppearanceModel`] does. Moves slip as `moves`, a logged drive with true places, did; without it as `navigator.slip` says.
-    /// `done` is called after each frame and may end the drive there.
+    /// `done` is called after each frame, with its picture, and may end the drive there.
     ///
     /// # Errors
     /// Returns [`ViewsError::Sizes`], [`ViewsError::TooManyStates`], [`ViewsError::PlacesWithoutPicture`], [`ViewsError::NoMoves`], or an error of the
@@ -56,7 +75,7 @@ impl LoggedViews {
         moves: Option<&MoveTable>,
         feature: DescriptorKind,
         params: &ViewsParams,
-        mut done: impl FnMut() -> ControlFlow<()>,
+        mut done: impl FnMut(&PositionGrid, &LoggedView, Option<&EncodedImage>) -> ControlFlow<()>,
     ) -> Result<Self, ViewsError> {
         let (size, grid, features) = learn(learned, feature, params)?;
         let route = RouteAppearanceParams::default();
@@ -68,19 +87,19 @@ impl LoggedViews {
         };
         let anything = SlipProbabilities { stay_probability: 0.0, other_action_probability: 1.0 };
         let anything = anything.transition(&grid, GridMove::STAY)?;
-        let keeps_beliefs = drive.frames.len().saturating_mul(grid.n_states()) <= MAX_SHOWN;
         let mut run = Self {
             grid,
             learned: features,
             motion,
-            views: Vec::new(),
-            tolerance: route.same_place_tolerance,
+            beliefs: Decimated::new(MAX_SIDE),
+            errors: Decimated::new(MOST_ESTIMATES),
+            totals: LoggedTotals::default(),
             events: BTreeMap::new(),
         };
         let mut filter = DiscreteFilter::uniform(grid.n_states())?;
-        for frame in &drive.frames {
-            let row = frame.row.as_ref();
-            if !run.views.is_empty() {
+        for (number, frame) in drive.frames.iter().enumerate() {
+            let (row, image) = (frame.row.as_ref(), frame.image());
+            if number > 0 {
                 match row.and_then(|row| row.action) {
                     Some(action) => filter.predict(&transitions[index(action)])?, // Eqs. 3-5
                     None => {
@@ -90,7 +109,7 @@ impl LoggedViews {
                 }
                 filter.leak(params.localizer.kidnapping_probability)?;
             }
-            match frame.image.as_ref().and_then(decoded) {
+            match image.as_ref().and_then(decoded) {
                 Some(picture) if picture.dimensions() == size => {
                     let measured = extracted(&picture, feature, params)?;
                     let outcome = filter.update(&appearance.log_likelihoods(&measured)?)?; // Eq. 6
@@ -102,9 +121,10 @@ impl LoggedViews {
                 None => run.count("frame_unreadable"),
             }
             let truth = row.and_then(|row| state(&grid, row));
-            let belief = keeps_beliefs.then(|| filter.belief().to_vec());
-            run.views.push(LoggedView { best: filter.best(), truth, belief });
-            if done().is_break() {
+            let view = LoggedView { number, best: filter.best(), truth, belief: filter.belief().to_vec() };
+            let flow = done(&grid, &view, image.as_ref());
+            run.add(view, route.same_place_tolerance, params.navigator.goal_confidence);
+            if flow.is_break() {
                 break;
             }
         }
@@ -115,45 +135,50 @@ impl LoggedViews {
         *self.events.entry(name.to_owned()).or_default() += 1;
     }
 
-    /// Moves between the most probable and the true place of each frame with a true one.
-    pub fn errors(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.views.iter().enumerate().filter_map(|(frame, view)| {
-            let ((x, y), (true_x, true_y)) = (self.grid.place(view.best.state), self.grid.place(view.truth?));
-            Some((frame, x.abs_diff(true_x).max(y.abs_diff(true_y))))
-        })
+    fn add(&mut self, view: LoggedView, tolerance: usize, goal_confidence: f64) {
+        let totals = &mut self.totals;
+        totals.n += 1;
+        totals.confidence += view.best.confidence;
+        if let Some(truth) = view.truth {
+            let ((x, y), (true_x, true_y)) = (self.grid.place(view.best.state), self.grid.place(truth));
+            let error = x.abs_diff(true_x).max(y.abs_diff(true_y));
+            totals.found += usize::from(error <= tolerance);
+            totals.sum += error;
+            totals.largest = totals.largest.max(error);
+            totals.certain_of_wrong +=
+                u64::from(error > tolerance && view.best.confidence >= goal_confidence);
+            self.errors.push((view.number, error));
+        }
+        if self.grid.n_states() <= MAX_SIDE {
+            self.beliefs.push(view);
+        }
     }
 
     /// Figures and events for the report.
-    pub fn summarize(&self, params: &ViewsParams) -> ReportRun {
-        let n = self.views.len() as f64;
-        let confidence: f64 = self.views.iter().map(|view| view.best.confidence).sum();
+    pub fn summarize(&self) -> ReportRun {
+        let LoggedTotals { n, confidence, found, sum, largest, certain_of_wrong } = self.totals;
+        let n = n as f64;
         let mut metrics = vec![
             Metric::new("n_frames", n, ""),
             Metric::new("n_places", self.grid.n_states() as f64, ""),
             Metric::new("confidence_mean", confidence / n, ""),
         ];
-        let errors: Vec<(usize, usize)> = self.errors().collect();
         let mut events = self.events.clone();
-        if !errors.is_empty() {
-            let n = errors.len() as f64;
-            let found = errors.iter().filter(|(_, error)| *error <= self.tolerance).count();
-            let sum: usize = errors.iter().map(|(_, error)| error).sum();
-            let largest = errors.iter().map(|(_, error)| *error).max().unwrap_or(0);
+        if self.errors.n_seen() > 0 {
+            let n = self.errors.n_seen() as f64;
             metrics.extend([
                 Metric::new("n_frames_with_truth", n, ""),
                 Metric::new("localized_frame_share", found as f64 / n, ""),
                 Metric::new("place_error_mean", sum as f64 / n, "places"),
                 Metric::new("place_error_max", largest as f64, "places"),
             ]);
-            let is_certain =
-                |frame: usize| self.views[frame].best.confidence >= params.navigator.goal_confidence;
-            let wrong = errors.iter().filter(|(frame, error)| *error > self.tolerance && is_certain(*frame));
-            events.insert("certain_of_wrong_place".to_owned(), wrong.count() as u64);
+            events.insert("certain_of_wrong_place".to_owned(), certain_of_wrong);
         }
         if let Some(motion) = &self.motion {
             metrics.extend(motion_metrics(motion));
         }
-        ReportRun { metrics, events, ..ReportRun::default() }
+        let notes = self.beliefs.note("pictures").into_iter().collect();
+        ReportRun { metrics, events, notes, ..ReportRun::default() }
     }
 }
 
@@ -163,42 +188,43 @@ fn learn(
     feature: DescriptorKind,
     params: &ViewsParams,
 ) -> Result<((u32, u32), PositionGrid, StateDescriptorTable), ViewsError> {
-    let usable =
-        learned.frames.iter().filter_map(|frame| Some((frame, frame.image.as_ref().and_then(decoded)?)));
-    let pictures: Vec<_> = usable.collect();
-    let size = pictures.first().map_or((0, 0), |(_, picture)| picture.dimensions());
     let place = |row: Option<&MoveRow>| row.and_then(|row| row.place);
     let is_route = learned.frames.iter().all(|frame| place(frame.row.as_ref()).is_none());
-    let places: Vec<Option<[usize; 2]>> = (0..)
-        .zip(&pictures)
-        .map(|(index, (frame, _))| if is_route { Some([index, 0]) } else { place(frame.row.as_ref()) })
-        .collect();
-    let side = |axis: usize| places.iter().flatten().map(|place| place[axis] + 1).max().unwrap_or(1);
-    let n_states = side(0).saturating_mul(side(1));
-    if n_states > MAX_HYPOTHESES {
-        return Err(ViewsError::TooManyStates { n_states, n_conditions: 1, max: MAX_HYPOTHESES });
-    }
-    let grid = PositionGrid::new(side(0), side(1))?;
-    let mut sums: Vec<(f64, Vec<f64>)> = vec![(0.0, Vec::new()); grid.n_states()];
-    for ((_, picture), place) in pictures.iter().zip(&places) {
+    let (mut n_pictures, mut size) = (0, None);
+    let mut sums: BTreeMap<[usize; 2], (f64, Vec<f64>)> = BTreeMap::new();
+    for frame in &learned.frames {
+        let Some(picture) = frame.image().as_ref().and_then(decoded) else { continue };
+        let place = if is_route { Some([n_pictures, 0]) } else { place(frame.row.as_ref()) };
+        n_pictures += 1;
+        let size = *size.get_or_insert(picture.dimensions());
         if picture.dimensions() != size {
             let sizes = [size, picture.dimensions()].map(|(width, height)| (width as usize, height as usize));
             return Err(ViewsError::Sizes { learned: sizes[0], real: sizes[1] });
         }
-        let Some(state) = place.and_then(|[column, row]| grid.state(column, row)) else { continue };
-        let (n, sum) = &mut sums[state];
-        let features = extracted(picture, feature, params)?;
+        let Some(place) = place else { continue };
+        let (n, sum) = sums.entry(place).or_default();
+        let features = extracted(&picture, feature, params)?;
         *n += 1.0;
         sum.resize(features.len(), 0.0);
         sum.iter_mut().zip(features).for_each(|(sum, value)| *sum += value);
     }
-    let n_without = sums.iter().filter(|(n, _)| *n == 0.0).count();
-    if n_without > 0 {
-        return Err(ViewsError::PlacesWithoutPicture { n_without, n_places: grid.n_states() });
+    let side = |axis: usize| sums.keys().map(|place| place[axis] + 1).max().unwrap_or(1);
+    let n_states = side(0).saturating_mul(side(1));
+    if n_states > MAX_HYPOTHESES {
+        return Err(ViewsError::TooManyStates { n_states, n_conditions: 1, max: MAX_HYPOTHESES });
     }
-    let mean = |(n, sum): (f64, Vec<f64>)| sum.into_iter().map(|value| value / n).collect::<Vec<_>>();
-    let rows: Vec<Vec<f64>> = sums.into_iter().map(mean).collect();
-    Ok((size, grid, StateDescriptorTable::from_rows(&rows)?))
+    if sums.len() < n_states {
+        let n_without = n_states - sums.len();
+        return Err(ViewsError::PlacesWithoutPicture { n_without, n_places: n_states });
+    }
+    let grid = PositionGrid::new(side(0), side(1))?;
+    let mean = |state: usize| {
+        let (column, row) = grid.place(state);
+        let (n, sum) = &sums[&[column, row]];
+        sum.iter().map(|value| value / n).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<f64>> = (0..n_states).map(mean).collect();
+    Ok((size.unwrap_or_default(), grid, StateDescriptorTable::from_rows(&rows)?))
 }
 
 /// Transitions and diffusion of a logged drive: each row with a move and a place after a row with a place.

@@ -1,18 +1,19 @@
 use anyhow::Result;
+use wayfix_condensation::{DiscreteStateSpace, PositionGrid};
 use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 use wayfix_sensor_log::{EncodedImage, FoxgloveMessageWriter, MessageSinks, Record, RecordData, Stamp};
-use wayfix_table_log::MovedFrameFolder;
 
 use super::{
-    DescriptorKind, LoggedViews,
+    DescriptorKind, LoggedView, LoggedViews,
     estimates::{BELIEF, NANOSECONDS_A_MOVE},
     feature_plot,
+    logged::MAX_SIDE,
     plots::{BEST, CELL, TRUTH, belief_map, shade},
 };
 use crate::system::EstimateWriter;
 
-/// Pixels of the picture of all beliefs, at most, in each direction.
-const MAX_SIDE: usize = 1200;
+/// Beliefs over more places are drawn up to this product of frames and places.
+const MAX_SHOWN: usize = 4_000_000;
 
 /// The belief over all places frame by frame, the errors where the truth is known, and the features of the places.
 ///
@@ -21,7 +22,8 @@ const MAX_SIDE: usize = 1200;
 pub fn logged_plots(run: &LoggedViews, feature: DescriptorKind) -> Result<Vec<SvgPlot>> {
     let mut plots = Vec::new();
     plots.extend(beliefs(run)?);
-    let errors: Vec<(f64, f64)> = run.errors().map(|(frame, error)| (frame as f64, error as f64)).collect();
+    let errors: Vec<(f64, f64)> =
+        run.errors.kept().iter().map(|(frame, error)| (*frame as f64, *error as f64)).collect();
     if !errors.is_empty() {
         let plot = LinePlot {
             title: "How far off the best place is".to_owned(),
@@ -38,19 +40,20 @@ pub fn logged_plots(run: &LoggedViews, feature: DescriptorKind) -> Result<Vec<Sv
 
 /// A column a frame, a row a place, the first place at the bottom.
 fn beliefs(run: &LoggedViews) -> Result<Option<SvgPlot>> {
-    let beliefs: Vec<&Vec<f64>> = run.views.iter().filter_map(|view| view.belief.as_ref()).collect();
-    let (n_frames, n_places) = (beliefs.len(), beliefs.first().map_or(0, |belief| belief.len()));
-    if n_frames == 0 || n_frames.max(n_places) > MAX_SIDE {
+    let views = run.beliefs.kept();
+    let (n_frames, n_places) = (views.len(), run.grid.n_states());
+    if n_frames == 0 {
         return Ok(None);
     }
     let cell = (MAX_SIDE / 2 / n_frames.max(n_places)).max(1);
     let (width, height) = (n_frames * cell, n_places * cell);
     let pixel = |i: usize| {
         let (frame, place) = (i % width / cell, n_places - 1 - i / width / cell);
-        let most = beliefs[frame].iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let is_true = run.views[frame].truth == Some(place);
+        let LoggedView { truth, belief, .. } = &views[frame];
+        let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let is_true = *truth == Some(place);
         // The true place is marked on every tenth frame.
-        if is_true && frame % 10 == 0 { TRUTH } else { shade(beliefs[frame][place] / most) }
+        if is_true && frame % 10 == 0 { TRUTH } else { shade(belief[place] / most) }
     };
     let pixels: Vec<u8> = (0..width * height).flat_map(pixel).collect();
     let frame_size = (width as u32, height as u32);
@@ -63,28 +66,48 @@ fn beliefs(run: &LoggedViews) -> Result<Option<SvgPlot>> {
 }
 
 /// Shows viewers the belief over the places at each frame, with the pictures of the log where `has_echo`.
-///
-/// # Errors
-/// Returns an error if an image cannot be encoded or a sink fails.
-pub fn draw_logged(
-    run: &LoggedViews,
-    drive: &MovedFrameFolder,
+pub struct LoggedDrawing {
+    writer: EstimateWriter,
+    n_frames: usize,
     has_echo: bool,
-    sinks: MessageSinks,
-) -> Result<()> {
-    let mut writer: EstimateWriter = FoxgloveMessageWriter::into_sink(sinks);
-    for ((number, view), frame) in (0..).zip(&run.views).zip(&drive.frames) {
-        let stamp = Stamp::from_nanoseconds(number * NANOSECONDS_A_MOVE);
-        if let Some(image) = frame.image.as_ref().filter(|_| has_echo) {
-            writer.record(&Record { stamp, data: RecordData::Image(image.clone()) })?;
+}
+
+impl LoggedDrawing {
+    /// Writes into all of `sinks`, for a drive of `n_frames`.
+    pub fn new(n_frames: usize, has_echo: bool, sinks: MessageSinks) -> Self {
+        Self { writer: FoxgloveMessageWriter::into_sink(sinks), n_frames, has_echo }
+    }
+
+    /// Draws the belief after a frame and its picture.
+    ///
+    /// # Errors
+    /// Returns an error if an image cannot be encoded or a sink fails.
+    pub fn draw(
+        &mut self,
+        grid: &PositionGrid,
+        view: &LoggedView,
+        picture: Option<&EncodedImage>,
+    ) -> Result<()> {
+        let stamp = Stamp::from_nanoseconds(view.number as u64 * NANOSECONDS_A_MOVE);
+        if let Some(image) = picture.filter(|_| self.has_echo) {
+            self.writer.record(&Record { stamp, data: RecordData::Image(image.clone()) })?;
         }
-        if let Some(belief) = &view.belief {
+        let n_places = grid.n_states();
+        if n_places <= MAX_SIDE || self.n_frames.saturating_mul(n_places) <= MAX_SHOWN {
             let truth = view.truth.map(|truth| (truth, TRUTH));
             let marks: Vec<_> = std::iter::once((view.best.state, BEST)).chain(truth).collect();
-            let [width, height] = [run.grid.columns(), run.grid.rows()].map(|n| (n * CELL) as u32);
-            let image = EncodedImage::png_rgb(width, height, &belief_map(&run.grid, belief, &marks))?;
-            writer.image(BELIEF, stamp, &image)?;
+            let [width, height] = [grid.columns(), grid.rows()].map(|n| (n * CELL) as u32);
+            let image = EncodedImage::png_rgb(width, height, &belief_map(grid, &view.belief, &marks))?;
+            self.writer.image(BELIEF, stamp, &image)?;
         }
+        Ok(())
     }
-    Ok(writer.finish()?)
+
+    /// Finishes writing.
+    ///
+    /// # Errors
+    /// Returns an error if a sink fails.
+    pub fn finish(self) -> Result<()> {
+        Ok(self.writer.finish()?)
+    }
 }

@@ -41,7 +41,7 @@ pub use estimates::draw_drive;
 pub use feature::DescriptorKind;
 pub use figures::summarize;
 pub use logged::{LoggedView, LoggedViews};
-pub use logged_plots::{draw_logged, logged_plots};
+pub use logged_plots::{LoggedDrawing, logged_plots};
 pub use normalization::LightNormalization;
 pub use params::ViewsParams;
 pub use plots::shade;

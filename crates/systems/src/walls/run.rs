@@ -2,8 +2,8 @@ use std::borrow::Borrow;
 
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, TruePositions};
-use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
+use wayfix_sensor_log::{Record, RecordData, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
 use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
@@ -75,7 +75,7 @@ pub fn run_streamed<R: Borrow<Record>>(
         truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
     };
     system.add_given_anchors(&params.anchors, None, between)?;
-    drive_through(system, track, true_walls, overview, records, observe)
+    drive_through(system, track, true_walls, records, observe)
 }
 
 /// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `association` is the rule
@@ -95,22 +95,18 @@ pub fn run_on<R: Borrow<Record>>(
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
     let track = ReferencePath::from_records_or_estimates(overview);
-    drive_through(system, track, truth::true_walls(overview), overview, records, observe)
+    drive_through(system, track, truth::true_walls(overview), records, observe)
 }
 
 fn drive_through<R: Borrow<Record>>(
     system: WallSystem,
     truth: ReferencePath,
     true_map: Vec<TrueWall>,
-    overview: &[Record],
     records: impl IntoIterator<Item = R>,
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let delay = system.front_end.params.odometry_delay;
-    let true_positions = TruePositions::from_records(overview);
-    let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
-    let mut run = SlamRun { system, truth, true_positions, true_map, evaluated_until, smoothed: None }
-        .through(records, observe);
+    let mut run = SlamRun::new(system, &truth, true_map).through(records, observe);
     if run.system.stamped_estimates().is_empty() {
         let n_before = run.events().get("record_before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");

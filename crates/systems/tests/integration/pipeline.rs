@@ -120,6 +120,10 @@ mod overview {
             let (records, overview) = overview(log, 200);
             assert_eq!(overview.n_records, records.len());
             assert!(overview.records.len() < 3 * records.len() / 4, "{}", overview.records.len());
+            let n_true = |records: &[Record]| {
+                records.iter().filter(|record| matches!(record.data, RecordData::TruePose(_))).count()
+            };
+            assert!(n_true(&overview.records) < n_true(&records) / 2, "{}", n_true(&overview.records));
             let params = PointSlamParams::of(RobotProfile::Generic);
             let mut whole = points::run(&records, &params, |_| {}).unwrap();
             let mut streamed = points::run_streamed(&overview.records, &records, &params, |_| {}).unwrap();

@@ -17,7 +17,7 @@ use wayfix_systems::{
     settings::from_toml,
     system::Stopwatch,
     views::{
-        self, DescriptorKind, LightNormalization, LoggedViews, RealSceneTransform, ViewSystem,
+        self, DescriptorKind, LightNormalization, LoggedDrawing, LoggedViews, RealSceneTransform, ViewSystem,
         ViewSystemConfig, ViewsParams, ViewsRun,
     },
 };
@@ -224,21 +224,26 @@ fn logged(
     let learned = folder(learn_from, None)?;
     let drive = folder(log, arguments.actions.as_deref())?;
     let mut outputs = Outputs::open("views", &arguments.common)?;
+    let (sinks, n_frames) = (outputs.sinks()?, drive.frames.len());
+    let mut drawing = (!sinks.is_empty()).then(|| LoggedDrawing::new(n_frames, outputs.has_echo(), sinks));
+    let mut drawn = Ok(());
     let stopwatch = Stopwatch::start();
-    let bar = terminal::bar(drive.frames.len(), "frames");
-    let run = LoggedViews::localize(&learned, &drive, moves, arguments.feature, params, || {
-        bar.inc(1);
-        interrupt::flow()
-    });
+    let bar = terminal::bar(n_frames, "frames");
+    let run =
+        LoggedViews::localize(&learned, &drive, moves, arguments.feature, params, |grid, view, image| {
+            if let Some(drawing) = drawing.as_mut().filter(|_| drawn.is_ok()) {
+                drawn = drawing.draw(grid, view, image);
+            }
+            bar.inc(1);
+            interrupt::flow()
+        });
     bar.finish_and_clear();
     let run = run?;
     let (name, seconds) = (log.display().to_string(), stopwatch.elapsed().as_secs_f64());
     let warnings = interrupt::warning().into_iter().collect();
-    let summary = ReportRun { name, seconds, warnings, ..run.summarize(params) };
-    let sinks = outputs.sinks()?;
-    if !sinks.is_empty() {
-        views::draw_logged(&run, &drive, outputs.has_echo(), sinks)?;
-    }
+    let summary = ReportRun { name, seconds, warnings, ..run.summarize() };
+    drawn?;
+    drawing.map_or(Ok(()), LoggedDrawing::finish)?;
     outputs.show(summary, || views::logged_plots(&run, arguments.feature))?;
     Ok(ExitCode::SUCCESS)
 }

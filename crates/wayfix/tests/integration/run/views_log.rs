@@ -136,3 +136,14 @@ fn a_drive_without_a_table_is_a_route() {
     assert!(outcome.stderr.contains("each picture is one place on"));
     assert!(outcome.metric("confidence_mean") > 1.0 / 13.0);
 }
+
+#[test]
+fn a_long_drive_is_judged_by_all_frames_and_pictures_by_some() {
+    let scratch = Scratch::new();
+    let (learned, long) = (learned(&scratch), folder(&scratch, "drive", &drive(6, 1300)));
+    let out = scratch.path("out");
+    let outcome = run(&long, &learned, &[OsStr::new("--out"), out.as_os_str()]);
+    assert_eq!(["n_frames", "n_frames_with_truth"].map(|name| outcome.metric(name)), [1300.0; 2]);
+    let report = fs::read_to_string(out.join("report.json")).expect("a report");
+    assert!(report.contains("pictures are of one in 2 of 1300"), "{report}");
+}

@@ -4,10 +4,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use wayfix_sensor_log::EncodedImage;
 
-use super::svg::canvas::FONT_SIZE;
-use super::svg::layout::{WIDTH, no_data};
-use super::svg::markup::escape;
-use super::{PlotError, SvgPlot};
+use crate::plot::svg::canvas::FONT_SIZE;
+use crate::plot::svg::layout::{WIDTH, no_data};
+use crate::plot::svg::markup::escape;
+use crate::plot::{PlotError, SvgPlot};
 
 /// Rows of images of one size: camera images and results.
 ///
