@@ -81,3 +81,26 @@ pub(super) fn retain_distant(candidates: &mut Vec<Candidate>, n: usize, distance
     }
     *candidates = kept;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_of_near_candidates_stays_and_the_known_ones_do() {
+        let candidate = |x: f64, log_evidence: LogWeight, is_known: bool| {
+            let newest = Pose2::new(x, 0.0, 0.0);
+            let known = is_known.then_some(newest);
+            Candidate { log_evidence, known, ..Candidate::new(Trajectory::through(&newest, 0, &[])) }
+        };
+        let all =
+            [(0.0, 1.0, false), (0.2, 3.0, false), (1.0, 2.0, false), (2.0, 0.0, false), (0.1, -9.0, true)];
+        let kept = |n: usize, distance: f64| {
+            let mut candidates = all.map(|(x, log, is_known)| candidate(x, log, is_known)).to_vec();
+            retain_distant(&mut candidates, n, distance);
+            candidates.iter().map(|one| one.trajectory.newest.x()).collect::<Vec<_>>()
+        };
+        assert_eq!(kept(2, 0.3), [0.2, 1.0, 0.1]);
+        assert_eq!(kept(usize::MAX, 0.15), [0.2, 1.0, 0.0, 2.0, 0.1]);
+    }
+}
