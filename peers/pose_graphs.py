@@ -6,7 +6,7 @@
 
 FOLDER has files `.g2o` or `.g2o.gz`. In a COMMAND, `{}` is the file; it prints `own=COST` and `ms=TIME` (computing time without reading the file).
 Prints a table: the best cost (without ½), and of each program computing time in ms of start and optimization (median of three runs; of one, if that takes over 10 s) and peak memory
-of the process in MB; in brackets if its cost is above the best by more than 1e-5 of it: residuals differ a little from program to program.
+of the process in MB; in brackets if its cost is above the best by more than 1e-4 of it. Residuals differ a little from program to program.
 GTSAM: Levenberg–Marquardt from the file's poses, or from dead reckoning along the edges i → i + 1 where there are none.
 All run with one thread.
 """
@@ -88,7 +88,7 @@ def cell(results, best):
         return "fails"
     cost, _, megabytes = results[0]
     text = f"{statistics.median(ms for _, ms, _ in results):.0f}/{megabytes:.0f}"
-    return text if cost <= best * (1 + 1e-5) else f"({text})"
+    return text if cost <= best * (1 + 1e-4) else f"({text})"
 
 
 def main():
