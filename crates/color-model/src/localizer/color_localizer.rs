@@ -65,6 +65,7 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     pub(super) params: LocalizerParams,
     odometry: M,
     likelihood: L,
+    /// Where the robot may have been at the start; anywhere once it was moved.
     pub(super) start: StartPosePrior,
     /// The light before the first frame.
     pub(super) prior: Arc<SunAndShade<T>>,
@@ -231,6 +232,9 @@ where
         let is_start = self.n_updates < self.params.search.n_buffered_frames;
         let confirmed = is_certain.filter(|is_certain| *is_certain || is_start);
         self.is_confirmed = !has_moved && confirmed.unwrap_or(self.is_confirmed);
+        if has_moved && !is_start {
+            self.start = StartPosePrior::Anywhere;
+        }
         (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
         self.remember_frame(light_before, share);
         self.outcome()

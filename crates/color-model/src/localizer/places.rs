@@ -15,12 +15,12 @@ use crate::{ColorModelError, LightingTracker, LikelihoodModel, lighting::SunAndS
 
 type Test<T> = RelocalizationTest<ColorFilter<SunAndShade<T>>>;
 
-/// Whether a search found the present place again as the best one, and all other places together are improbable.
-fn is_present_certain<F>(found: &[Found<F>]) -> bool {
+/// Whether a search found the present place again as the best one, and all other places together are improbable. Each has these log-odds before the search.
+fn is_present_certain<F>(found: &[Found<F>], log_prior_odds: f64) -> bool {
     let Some(best) = found.first() else { return false };
     let is_best = |place: &Pose2<f64>| is_same_place(place, &best.place);
     let others = found.iter().filter(|one| !is_best(&one.place));
-    let odds: f64 = others.map(|one| one.evidence.log_odds(&best.evidence).exp()).sum();
+    let odds: f64 = others.map(|one| (log_prior_odds + one.evidence.log_odds(&best.evidence)).exp()).sum();
     let is_present_best = found.iter().any(|one| one.is_present && is_best(&one.place));
     is_present_best && 1.0 / (1.0 + odds) > TRACKING_PROBABILITY
 }
@@ -69,13 +69,22 @@ where
         let known = std::iter::once(present.location()).chain(alternatives).skip(usize::from(n_frames == 1));
         let known = known.collect::<Result<Vec<_>, _>>()?;
         let found = self.search(buffer, is_start)?.run(&known, rng)?;
-        let is_certain = is_present_certain(&found);
+        let is_certain = is_present_certain(&found, self.log_prior_odds(is_start));
         if is_start {
             self.choose_start(found, present, test)?;
         } else {
             self.propose(found, test)?;
         }
         Ok(Some(is_certain))
+    }
+
+    /// Log-odds of another place before a search. A robot that knew its start is elsewhere only if it was moved since the last search, on a metre of way.
+    fn log_prior_odds(&self, is_start: bool) -> f64 {
+        let is_moved = self.params.relocalization.kidnappings_per_km / 1000.0;
+        match self.start {
+            StartPosePrior::Near(_) if !is_start => (is_moved / self.area.n_places() as f64).ln(),
+            _ => 0.0,
+        }
     }
 
     fn search<'a>(
