@@ -78,7 +78,7 @@ impl RelocalizationParams {
     }
 
     /// Prior probability of being moved, per m.
-    pub(crate) fn prior(&self) -> f64 {
+    pub fn prior(&self) -> f64 {
         self.kidnappings_per_km / METERS_PER_KM
     }
 }

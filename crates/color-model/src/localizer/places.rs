@@ -78,11 +78,12 @@ where
         Ok(Some(is_certain))
     }
 
-    /// Log-odds of another place before a search. A robot that knew its start is elsewhere only if it was moved since the last search, on a metre of way.
+    /// Log-odds of another place before a search. A robot that knew its start is elsewhere only if it was moved. A search counts as a metre of driving.
     fn log_prior_odds(&self, is_start: bool) -> f64 {
-        let is_moved = self.params.relocalization.kidnappings_per_km / 1000.0;
         match self.start {
-            StartPosePrior::Near(_) if !is_start => (is_moved / self.area.n_places() as f64).ln(),
+            StartPosePrior::Near(_) if !is_start => {
+                (self.params.relocalization.prior() / self.area.n_places() as f64).ln()
+            }
             _ => 0.0,
         }
     }
@@ -102,7 +103,7 @@ where
         Search::new(self.scene(&()), (&self.area, start), &self.params, lights, (frames, shares))
     }
 
-    /// The best place is the present one, and the others are its alternatives: all frames say so.
+    /// The best place by all frames becomes the present one, and the others its alternatives.
     fn choose_start(
         &self,
         mut found: Vec<Found<SunAndShade<T>>>,

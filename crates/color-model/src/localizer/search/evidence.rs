@@ -6,11 +6,12 @@ use wayfix_estimation_traits::LogWeight;
 use super::{
     StartPosePrior,
     candidate::{Candidate, FittedLight},
+    place_evidence::PlaceEvidence,
     pyramid::Level,
 };
 use crate::{
     ColorModelError, LightingTracker, PixelLikelihoodFrame, PixelSums, TileSums,
-    likelihood::{LightOfTiles, PlaceEvidence, TileLight, TileLikelihood, gather_tiles, or_hidden},
+    likelihood::{LightOfTiles, TileLight, TileLikelihood, gather_tiles, or_hidden},
     localizer::{LocalizerParams, buffer::BufferedFrame, camera::CameraLocation, frame::Scene},
 };
 

@@ -11,12 +11,12 @@ use super::{
     candidate::{Candidate, Steps, retain_distant},
     detections::Detections,
     evidence::{Effort, Evidence, Scratch},
+    place_evidence::PlaceEvidence,
     pyramid::Level,
     trajectory::Trajectory,
 };
 use crate::{
     ColorModelError, LightingTracker, PixelClassifier,
-    likelihood::PlaceEvidence,
     localizer::{
         LocalizerParams,
         buffer::BufferedFrame,

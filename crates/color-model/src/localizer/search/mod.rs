@@ -5,6 +5,7 @@ mod candidate;
 mod detections;
 mod evidence;
 mod global_search;
+mod place_evidence;
 mod pyramid;
 mod start;
 mod trajectory;

@@ -3,9 +3,9 @@ use std::collections::BTreeMap;
 use wayfix_estimation_traits::LogWeight;
 
 /// How well a place explains some frames, and which of their tiles say so.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct PlaceEvidence {
-    /// Log-likelihood of the frames, nats.
+    /// Log-likelihood of the frames with the prior of the trajectory, nats.
     pub(crate) log: LogWeight,
     /// What each tile adds to the log-likelihood of its frame, by frame and tile, with the share that the frame counts. A tile that is missing adds nothing.
     gains: BTreeMap<(usize, usize), (f64, LogWeight)>,
@@ -26,7 +26,7 @@ impl PlaceEvidence {
         self.gains.extend(gains.into_iter().map(|(tile, gain)| ((frame, tile), (share, gain))));
     }
 
-    /// The log-odds of this place and another, nats. A likelihood is never quite right; that some tiles speak for one place and some for the other tells how wrong it may be.
+    /// The log-odds of this place and another, nats. No likelihood is exact. The more the tiles disagree about two places, the less their ratio counts.
     pub(crate) fn log_odds(&self, other: &Self) -> LogWeight {
         bounded_log_odds(self.log - other.log, self.variance_of_ratio(other))
     }
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(one.log_odds(&one), 0.0);
     }
 
-    /// By Monte Carlo: how often a ratio with errors says the wrong place, on average over its odds.
+    /// By Monte Carlo: the mean probability that a ratio with errors gives the wrong place. The bound holds, and is not ten times too high.
     #[test]
     fn odds_are_a_bound() {
         use rand::SeedableRng;
