@@ -94,13 +94,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     print(format!("{}\n", time.told(threads.current_num_threads())))?;
 
     let cells_done: Vec<_> = finished.iter().map(|done| done.cell.clone()).collect();
-    let session = RegressSession::new(&options, shard, finished);
-    threads.install(|| run_shard(&options, shard, &cells_done, &|done| session.add(done)))?;
-    let (done, run_costs) = session.finish()?;
+    let mut session = RegressSession::new(&options, shard, finished);
     if arguments.store_costs {
         ensure!(threads.current_num_threads() == 1, "--store-costs needs --threads 1");
-        RunCosts::store(&options, &run_costs, calibration_s)?;
+        session = session.storing_costs(calibration_s);
     }
+    threads.install(|| run_shard(&options, shard, &cells_done, &|done| session.add(done)))?;
+    let done = session.finish()?;
 
     if shard.is_part() {
         let path = ShardResults::new(&options, shard, &done)?.write(&options.out)?;

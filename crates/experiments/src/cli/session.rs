@@ -7,23 +7,20 @@ use wayfix_evaluation::{
 };
 
 use crate::regress::{
-    CampaignShard, CompletedRun, RegressOptions, SeededRun, ShardResults, assemble, thread_seconds,
+    CampaignShard, CompletedRun, RegressOptions, RunCosts, ShardResults, assemble, thread_seconds,
 };
 
 /// The runs of a call that are finished. After each one its line is printed, and the report and the state for `--resume` are written.
 pub(super) struct RegressSession<'a> {
     options: &'a RegressOptions,
     shard: CampaignShard,
+    /// Seconds of the short computation by which costs are scaled, if the cost of each run is stored.
+    calibration_s: Option<f64>,
     state: Mutex<SessionState>,
 }
 
-/// A run and the seconds of computing that it took.
-type RunCost = (SeededRun, f64);
-
 struct SessionState {
     done: Vec<CompletedRun>,
-    /// Seconds of computing of each run; right with one thread only.
-    costs: Vec<RunCost>,
     /// Seconds of computing up to the end of the last run.
     computed_s: f64,
     /// The first failure of writing.
@@ -32,11 +29,13 @@ struct SessionState {
 
 impl<'a> RegressSession<'a> {
     pub(super) fn new(options: &'a RegressOptions, shard: CampaignShard, done: Vec<CompletedRun>) -> Self {
-        Self {
-            options,
-            shard,
-            state: Mutex::new(SessionState { done, costs: Vec::new(), computed_s: 0.0, failure: Ok(()) }),
-        }
+        let state = Mutex::new(SessionState { done, computed_s: 0.0, failure: Ok(()) });
+        Self { options, shard, calibration_s: None, state }
+    }
+
+    /// Stores what each run costs as soon as it ends; right with one thread only.
+    pub(super) fn storing_costs(self, calibration_s: f64) -> Self {
+        Self { calibration_s: Some(calibration_s), ..self }
     }
 
     /// Takes a finished run in.
@@ -44,10 +43,12 @@ impl<'a> RegressSession<'a> {
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let cell = run.cell.clone();
         let cost = thread_seconds() - state.computed_s;
-        state.costs.push((cell.clone(), cost));
         state.done.push(run);
         if state.failure.is_ok() {
-            state.failure = self.write(&state.done, (&cell.suite, &cell.run));
+            let stored = self.calibration_s.map_or(Ok(()), |calibration_s| {
+                RunCosts::store(self.options, &[(cell.clone(), cost)], calibration_s)
+            });
+            state.failure = stored.and_then(|()| self.write(&state.done, (&cell.suite, &cell.run)));
         }
         state.computed_s = thread_seconds();
     }
@@ -64,13 +65,13 @@ impl<'a> RegressSession<'a> {
         found.map_or(Ok(()), |found| print(run_line(suite, found, TableStyle::of_stdout())))
     }
 
-    /// All runs that are finished, and what those of this call cost.
+    /// All runs that are finished.
     ///
     /// # Errors
     /// Returns the first failure of writing.
-    pub(super) fn finish(self) -> Result<(Vec<CompletedRun>, Vec<RunCost>)> {
-        let SessionState { done, costs, failure, .. } =
+    pub(super) fn finish(self) -> Result<Vec<CompletedRun>> {
+        let SessionState { done, failure, .. } =
             self.state.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        failure.map(|()| (done, costs))
+        failure.map(|()| done)
     }
 }
