@@ -8,9 +8,9 @@ use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_line_extract::{PointDistanceReference, douglas_peucker, simplify};
+use wayfix_system_core::Stopwatch;
 
 use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::system::Stopwatch;
 
 type Chain = Vec<Vector2<f64>>;
 

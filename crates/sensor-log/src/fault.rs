@@ -1,6 +1,7 @@
 //! Faults of a single message, and the common checks.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use wayfix_encoded_image::ImageError;
 use wayfix_estimation_traits::Pose3;
 
 use crate::RowProblemKind;
@@ -11,6 +12,10 @@ pub(crate) type Fault = (RowProblemKind, String);
 
 /// Tolerance of the norm of a unit quaternion in doubles after a few products.
 const ROUNDING: f64 = 1e-12;
+
+pub(crate) fn unreadable_image(error: &ImageError) -> Fault {
+    (RowProblemKind::UnreadableImage, error.to_string())
+}
 
 pub(crate) fn inconsistent(reason: &str) -> Fault {
     (RowProblemKind::Inconsistent, reason.to_owned())

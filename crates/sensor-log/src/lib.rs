@@ -36,7 +36,6 @@ mod convert;
 mod error;
 mod fault;
 mod formats;
-mod image;
 mod image_folder;
 mod log;
 mod mcap_log;
@@ -58,7 +57,6 @@ pub use convert::convert;
 pub use error::LogError;
 pub use formats::compressed::read_text;
 pub use formats::format::LogFormat;
-pub use image::{DecodedImage, EncodedImage, ImageError, ImageFileFormat, LogImageStatistics, PixelLayout};
 pub use image_folder::{image_files, is_hidden};
 pub use log::{Log, LogMetadata};
 pub use mcap_log::{
@@ -76,4 +74,7 @@ pub use scan::{LaserScan, LogScanStatistics};
 pub use stamp::Stamp;
 pub use summary::{LogSummary, RecordKindSummary};
 pub use text::{PoseRelation, read_relations};
+pub use wayfix_encoded_image::{
+    DecodedImage, EncodedImage, ImageError, ImageFileFormat, LogImageStatistics, PixelLayout,
+};
 pub use write::{WriteReport, write};

@@ -1,9 +1,8 @@
-//! The estimators of Wayfix behind one trait: a [`system::System`] takes the records of a log and yields estimates, events and figures.
+//! Localization and vision of Wayfix on logs: each module is a [`System`](wayfix_system_core::System) that takes the records of a log and yields estimates,
+//! events and figures. SLAM is in `wayfix-slam-system`.
 //!
 //! | module | system |
 //! | --- | --- |
-//! | [`slam`] | EKF-SLAM; [`points`] from range-bearing detections, [`walls`] from laser scans |
-//! | [`ranges`] | path and places of beacons from ranges, by a smoother |
 //! | [`lines`] | walls of single scans |
 //! | [`color`] | localization in a coloured map |
 //! | [`cml`] | localization and mapping by appearance |
@@ -15,12 +14,5 @@
 pub mod cml;
 pub mod color;
 pub mod lines;
-pub mod points;
-pub mod ranges;
-pub mod saved;
-pub mod settings;
-pub mod slam;
-pub mod system;
 pub mod track;
 pub mod views;
-pub mod walls;

@@ -132,14 +132,11 @@ const WIDTH: usize = 100;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayfix_systems::{
-        cml::CmlParams,
-        color::ColorSystemParams,
+    use wayfix_slam_system::{
         points::{PointSlamParams, RobotProfile},
-        track::TrackParams,
-        views::ViewsParams,
         walls::WallSlamParams,
     };
+    use wayfix_systems::{cml::CmlParams, color::ColorSystemParams, track::TrackParams, views::ViewsParams};
 
     fn same_with_comments<P: JsonSchema + Serialize + PartialEq + serde::de::DeserializeOwned>(params: &P) {
         let text = commented(params).unwrap();

@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 21] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 23] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -20,11 +20,32 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 21] = [
     ("condensation", &["estimation-traits", "gaussian-core", "integrity", "particle"]),
     ("visual-tracking", &["gaussian-core", "particle"]),
     ("appearance-cml", &["estimation-traits", "gaussian-core", "integrity", "kalman"]),
-    ("sensor-log", &["estimation-traits"]),
+    ("encoded-image", &[]),
+    ("sensor-log", &["encoded-image", "estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
     ("evaluation", &["estimation-traits", "gaussian-core", "sensor-log"]),
-    ("record-checks", &["estimation-traits", "integrity", "sensor-log"]),
     ("table-log", &["estimation-traits", "evaluation", "sensor-log"]),
+    (
+        "system-core",
+        &["estimation-traits", "evaluation", "gaussian-core", "integrity", "sensor-log", "slam-ekf"],
+    ),
+    (
+        "slam-system",
+        &[
+            "estimation-traits",
+            "evaluation",
+            "gaussian-core",
+            "integrity",
+            "kalman",
+            "line-extract",
+            "scan-match",
+            "sensor-log",
+            "slam-ekf",
+            "slam-smoother",
+            "system-core",
+            "table-log",
+        ],
+    ),
     (
         "systems",
         &[
@@ -38,12 +59,11 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 21] = [
             "integrity",
             "kalman",
             "line-extract",
-            "record-checks",
             "scan-match",
             "scene-sim",
             "sensor-log",
             "slam-ekf",
-            "slam-smoother",
+            "system-core",
             "table-log",
             "visual-tracking",
         ],

@@ -6,9 +6,8 @@ use super::{Finding, Source};
 
 const MOST_FILES: usize = 15;
 const MOST_LINES: usize = 10_000;
-/// Crates that may be larger: worlds for four systems, formats of many robots, and the systems until points and walls are one application.
-const LARGER: [(&str, usize); 3] =
-    [("crates/scene-sim", 11_000), ("crates/sensor-log", 11_000), ("crates/systems", 12_000)];
+/// Crates that may be larger: worlds for four systems.
+const LARGER: [(&str, usize); 1] = [("crates/scene-sim", 11_000)];
 
 pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
     let rust = || sources.iter().filter(|source| source.path.ends_with(".rs"));

@@ -4,6 +4,7 @@ use anyhow::Result;
 use wayfix_appearance_cml::{LocalizerParams, MapLearning, PanoramaDescriptor, StartPosePrior};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
+use wayfix_system_core::Stopwatch;
 
 use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
@@ -11,7 +12,6 @@ use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveStep, localize_tri
 use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotSeries, statistics::quantile};
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
-use wayfix_systems::system::Stopwatch;
 
 /// Numbers of references.
 const N_REFERENCES: [usize; 7] = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];

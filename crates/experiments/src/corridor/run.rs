@@ -1,6 +1,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use anyhow::Result;
+use wayfix_system_core::Stopwatch;
 
 use super::{
     figures::{Variants, metrics},
@@ -8,7 +9,7 @@ use super::{
     traverses::{Traverses, features},
 };
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::{system::Stopwatch, views::DescriptorKind};
+use wayfix_systems::views::DescriptorKind;
 
 /// Learns one traverse and localizes the other; see the [module](super) for the figures.
 /// # Errors

@@ -8,10 +8,8 @@ use wayfix_evaluation::{
     errors::MeanInterval,
     report::{Metric, ReportRun},
 };
-use wayfix_systems::{
-    color::{ClassificationCounts, ColorSystemParams, priors, rate_of, read_map},
-    system::Stopwatch,
-};
+use wayfix_system_core::Stopwatch;
+use wayfix_systems::color::{ClassificationCounts, ColorSystemParams, priors, rate_of, read_map};
 
 use super::{
     figures,

@@ -1,9 +1,10 @@
 use wayfix_estimation_traits::Pose2;
 
 use super::candidate::Candidate;
+use wayfix_encoded_image::compressed_message;
+
 use super::motion::planar;
 use super::transforms::{is_body, last_part};
-use crate::image::picture;
 use crate::ros::{RosMessage, RosSchema};
 
 /// The frame of wheel odometry. [REP 105]
@@ -61,7 +62,9 @@ impl Probe {
         match (self, schema.decode(bytes)) {
             (Self::Image, message) => Some(match message {
                 Ok(RosMessage::Image(image)) => image.pixels().uncompressed().is_ok(),
-                Ok(RosMessage::CompressedImage(image)) => picture(image.format, image.data).is_ok(),
+                Ok(RosMessage::CompressedImage(image)) => {
+                    compressed_message(image.format, image.data).is_ok()
+                }
                 _ => false,
             }),
             (Self::Poses { first, moves_by_twist }, Ok(RosMessage::Odometry(odometry))) => {

@@ -1,5 +1,6 @@
 use std::collections::BTreeMap;
 
+use wayfix_encoded_image::compressed_message;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::kind::{BagRoute, Kind};
@@ -8,9 +9,8 @@ use super::probe::ODOMETRY_FRAME;
 use super::scan::Mount;
 use super::transforms::{Transforms, is_body, last_part};
 use super::{Choice, camera, measurement, scan};
-use crate::fault::{Fault, finite, inconsistent, spatial};
+use crate::fault::{Fault, finite, inconsistent, spatial, unreadable_image};
 use crate::formats::format::shortened;
-use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};
 use crate::{EncodedImage, LaserScan, Record, RecordData, RowProblemKind, Stamp, Velocity};
@@ -65,11 +65,19 @@ impl BagRecords {
             RosMessage::LaserScan(message) => self.scan(at(&message.header)?, &message),
             RosMessage::Image(image) => {
                 let stamp = at(&image.header)?;
-                Ok(self.image(stamp, image.header.frame_id, image.pixels().uncompressed()?))
+                Ok(self.image(
+                    stamp,
+                    image.header.frame_id,
+                    image.pixels().uncompressed().map_err(|error| unreadable_image(&error))?,
+                ))
             }
             RosMessage::CompressedImage(image) => {
                 let stamp = at(&image.header)?;
-                Ok(self.image(stamp, image.header.frame_id, picture(image.format, image.data)?))
+                Ok(self.image(
+                    stamp,
+                    image.header.frame_id,
+                    compressed_message(image.format, image.data).map_err(|error| unreadable_image(&error))?,
+                ))
             }
             RosMessage::CameraInfo(message) => {
                 let info = camera::pinhole(&message, self.choice.is_rectified)?;

@@ -2,13 +2,13 @@
 
 use foxglove::bytes::Bytes;
 use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, RawImage, Timestamp};
+use wayfix_encoded_image::{Anymap, RawPixels, compressed_message};
 use wayfix_estimation_traits::Pose3;
 
 use super::reading::decode::{decode, stamp};
 use super::topics;
-use crate::fault::{Fault, finite, inconsistent, spatial};
+use crate::fault::{Fault, finite, inconsistent, spatial, unreadable_image};
 use crate::formats::format::shortened;
-use crate::image::{Anymap, Pixels, picture};
 use crate::{CameraInfo, EncodedImage, ImageFileFormat, LogError, Record, RecordData, Stamp};
 
 /// Rejects records that a reader could not restore.
@@ -136,8 +136,9 @@ pub(super) fn raw_image(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fa
     let message: RawImage = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
     let RawImage { width, height, step, encoding, data, .. } = &message;
-    let pixels = Pixels { width: *width, height: *height, encoding, step: *step, data };
-    Ok(vec![Record { stamp, data: RecordData::Image(pixels.uncompressed()?) }])
+    let pixels = RawPixels { width: *width, height: *height, encoding, step: *step, data };
+    let image = pixels.uncompressed().map_err(|error| unreadable_image(&error))?;
+    Ok(vec![Record { stamp, data: RecordData::Image(image) }])
 }
 
 pub(super) fn image(
@@ -147,6 +148,7 @@ pub(super) fn image(
 ) -> Result<Vec<Record>, Fault> {
     let message: CompressedImage = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
-    let image = picture(&message.format, &message.data)?;
+    let image =
+        compressed_message(&message.format, &message.data).map_err(|error| unreadable_image(&error))?;
     Ok(vec![Record { stamp, data: to_data(image) }])
 }

@@ -1,6 +1,7 @@
+use wayfix_encoded_image::RawPixels;
+
 use super::Header;
 use crate::cdr::{CdrError, CdrReader, FromCdr};
-use crate::image::Pixels;
 
 /// `sensor_msgs/Image`: pixels as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,9 +35,9 @@ pub struct CompressedImage<'a> {
 
 impl<'a> Image<'a> {
     /// Its pixels.
-    pub(crate) fn pixels(&self) -> Pixels<'a> {
+    pub(crate) fn pixels(&self) -> RawPixels<'a> {
         let Self { width, height, encoding, step, data, .. } = *self;
-        Pixels { width, height, encoding, step, data }
+        RawPixels { width, height, encoding, step, data }
     }
 }
 

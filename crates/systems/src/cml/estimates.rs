@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{LogError, Record, topics};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathPieces, write_pose};
 
 use super::CmlSystem;
-use crate::system::{self, EstimateRecorder, EstimateWriter, PathPieces, write_pose};
 
 /// Writes the views, the path and the references of an appearance map beside the records, for viewers.
 pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawingState>;
@@ -20,7 +20,7 @@ const PERIOD: usize = 20;
 /// In a long log the period is this part of the views so far, so that the references do not outgrow the log.
 const PERIOD_SHARE: usize = 100;
 
-impl system::EstimateDrawer for CmlDrawingState {
+impl EstimateDrawer for CmlDrawingState {
     type System = CmlSystem;
 
     fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {

@@ -6,12 +6,9 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::ChiSquaredGate;
 use wayfix_sensor_log::{PoseMeasurement, Stamp};
 use wayfix_slam_ekf::{ExternalParams, MapMeasurement};
+use wayfix_system_core::{EventCounts, HeadingSignTest, in_map};
 
 use super::{CmlSystem, PanoramaLocalizer};
-use crate::{
-    slam::in_map,
-    system::{EventCounts, HeadingSignTest},
-};
 
 /// Probability with which a correct measurement passes the gate: the default of EKF-SLAM.
 const GATE_PROBABILITY: f64 = 0.9999;

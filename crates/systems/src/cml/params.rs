@@ -2,8 +2,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaDescriptorParams};
 use wayfix_slam_ekf::ExternalParams;
-
-use crate::system::VELOCITY_TIMEOUT;
+use wayfix_system_core::VELOCITY_TIMEOUT;
 
 /// Parameters of `wayfix run cml`. Keys that a parameter file omits keep their defaults.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -8,10 +8,12 @@ use rand_distr::StandardNormal;
 use wayfix_appearance_cml::StartPosePrior;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData};
+use wayfix_system_core::{
+    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay,
+};
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
 
-use crate::system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Task of a run.
@@ -70,7 +72,7 @@ pub fn run(
 }
 
 /// As [`run`], with the records one by one: a long log need not be kept. The records of the plan are then the
-/// [overview](crate::system::LogOverview) of the log; a delay of odometry was taken out of `records` already.
+/// [overview](wayfix_system_core::LogOverview) of the log; a delay of odometry was taken out of `records` already.
 ///
 /// # Errors
 /// Returns the errors of [`run`].

@@ -8,9 +8,9 @@ use wayfix_appearance_cml::{
     ArchivedDescriptorFormat, MapArchive, MapArchiveAppender, MapArchiveCompleteness, MapArchiveError,
 };
 use wayfix_sensor_log::{Record, Stamp};
+use wayfix_system_core::write_atomically;
 
 use super::{CmlSystem, PanoramaLocalizer};
-use crate::saved::write_atomically;
 
 /// Errors of writing and reading a map.
 #[derive(Debug, thiserror::Error)]

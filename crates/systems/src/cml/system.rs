@@ -9,12 +9,12 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
-
-use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
-use crate::system::{
+use wayfix_system_core::{
     EventCounts, HeldVelocity, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
     check_velocity,
 };
+
+use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
 
 /// The localizer of panoramas with an index, which avoids comparing with every reference.
 pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;

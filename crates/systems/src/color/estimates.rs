@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{LogError, Record, topics};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
 
 use super::ColorSystem;
-use crate::system::{self, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawingState>;
@@ -16,7 +16,7 @@ pub struct ColorDrawingState {
 /// Particles that are written: with all of them the file would be larger than twice the log.
 const MOST_PARTICLES: usize = 200;
 
-impl system::EstimateDrawer for ColorDrawingState {
+impl EstimateDrawer for ColorDrawingState {
     type System = ColorSystem;
 
     fn draw(

@@ -1,7 +1,7 @@
 use wayfix_color_map::ColorId;
+use wayfix_system_core::System;
 
 use super::{ClassificationCounts, ColorRun, rate_of};
-use crate::system::System;
 use wayfix_evaluation::{
     errors::MeanInterval,
     report::{Metric, ReportRun},

@@ -4,9 +4,9 @@ use anyhow::Result;
 use wayfix_color_model::LightingFilter;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Stamp;
+use wayfix_system_core::MOST_ESTIMATES;
 
 use super::{ColorRun, ColorSystem, field_lines, uv_ellipses};
-use crate::system::MOST_ESTIMATES;
 use wayfix_evaluation::plot::{
     CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, NamedEllipse, RasterMap, SvgPlot,
 };

@@ -8,13 +8,13 @@ use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
+use wayfix_system_core::TrueStartPose;
+use wayfix_system_core::{
+    ODOMETRY, RunStep, System, check_overlap, drive, warn_of_no_overlap, warn_of_start,
+    without_odometry_delay,
+};
 
 use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose, totals::ColorTotals};
-use crate::system::TrueStartPose;
-use crate::{
-    slam::{warn_of_no_overlap, warn_of_start},
-    system::{ODOMETRY, RunStep, System, check_overlap, drive, without_odometry_delay},
-};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Results of colour localization on a log, with the truth of the log.

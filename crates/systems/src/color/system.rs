@@ -11,9 +11,9 @@ use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
+use wayfix_system_core::{EventCounts, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System};
 
 use super::{ClassificationCounts, ColorSystemParams, tally};
-use crate::system::{EventCounts, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System};
 
 /// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{DrawingShape, LogError, Record, RecordData, ViewerDrawing, topics};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter};
 
 use super::{LineExtractionSystem, ScanWalls};
-use crate::system::{self, EstimateRecorder, EstimateWriter};
 
 /// Writes the walls of every scan beside the records, for viewers.
 pub type LineEstimateRecorder = EstimateRecorder<LineDrawingState>;
@@ -23,7 +23,7 @@ impl Default for LineDrawingState {
 
 const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 
-impl system::EstimateDrawer for LineDrawingState {
+impl EstimateDrawer for LineDrawingState {
     type System = LineExtractionSystem;
 
     const DRAWS_POSES: bool = false;

@@ -1,6 +1,6 @@
 use super::{LineExtractionSystem, WallScore};
-use crate::system::System;
 use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_system_core::System;
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(system: &mut LineExtractionSystem) -> ReportRun {

@@ -3,9 +3,9 @@ use std::{convert::Infallible, time::Duration};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
+use wayfix_system_core::{EventCounts, Stopwatch, System, largest_echo};
 
 use super::totals::LineTotals;
-use crate::system::{EventCounts, Stopwatch, System, largest_echo};
 use wayfix_evaluation::plot::Decimated;
 
 /// Extracts the walls of every scan of a log.

@@ -5,7 +5,8 @@ use wayfix_visual_tracking::{ColorContourTrackerParams, CorrelationTrackerParams
 /// Parameters of `wayfix run track`, independent of the recording.
 ///
 /// ```
-/// use wayfix_systems::{settings::from_toml, track::TrackParams};
+/// use wayfix_system_core::settings::from_toml;
+/// use wayfix_systems::track::TrackParams;
 /// let params = from_toml::<TrackParams>("[contour]\nn_samples = 50")?;
 /// assert_eq!((params.contour.n_samples, params.contour.adapts_colors), (50, true)); // the rest as it was
 /// assert!(from_toml::<TrackParams>("[contour]\nn_smaples = 50").is_err());

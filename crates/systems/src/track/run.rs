@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{Log, RecordData, RowProblemKind};
+use wayfix_system_core::{RunStep, System, drive};
 
 use super::{TrackRunHistory, TrackSystem, TrackSystemError};
-use crate::system::{RunStep, System, drive};
 
 /// Results of a tracker on a log.
 pub struct TrackRun {

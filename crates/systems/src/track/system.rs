@@ -2,6 +2,7 @@ use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
+use wayfix_system_core::{EventCounts, Stopwatch, System};
 use wayfix_visual_tracking::{
     BoundingBox, HeadDetector, RgbImage, TargetEstimate, TrackStatus, TrackingError,
 };
@@ -10,7 +11,6 @@ use super::{
     BoxScore, FrameTracker, InitialTargetRegion, LostStatusScore, TargetColorDistribution, TargetTruth,
     TrackParams, TrackSystemError, TrackingMethod, TrueBoxes,
 };
-use crate::system::{EventCounts, Stopwatch, System};
 
 /// A tracker that processes the images of a log.
 ///

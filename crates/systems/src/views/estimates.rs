@@ -3,12 +3,12 @@ use wayfix_condensation::RgbImage;
 use wayfix_sensor_log::{
     EncodedImage, FoxgloveMessageWriter, ImageOutline, MessageSinks, Record, RecordData, Stamp, topics,
 };
+use wayfix_system_core::EstimateWriter;
 
 use super::{
     ViewSystem, ViewTrialStep, ViewsError, ViewsRun,
     plots::{BEST, GOAL, JPEG_QUALITY, TRUTH, belief_image, slowest},
 };
-use crate::system::EstimateWriter;
 
 /// Topic of the belief, as an image of the places.
 pub(super) const BELIEF: &str = "/estimate/belief";

@@ -10,10 +10,10 @@ use wayfix_evaluation::{
     report::{Metric, ReportRun},
 };
 use wayfix_sensor_log::EncodedImage;
+use wayfix_system_core::MOST_ESTIMATES;
 use wayfix_table_log::{MoveRow, MoveTable, MovedFrameFolder};
 
 use super::{DescriptorKind, ViewsError, ViewsParams, figures::motion_metrics, system::MAX_HYPOTHESES};
-use crate::system::MOST_ESTIMATES;
 
 /// Pixels of the picture of all beliefs, at most, in each direction.
 pub(super) const MAX_SIDE: usize = 1200;

@@ -2,6 +2,7 @@ use anyhow::Result;
 use wayfix_condensation::{DiscreteStateSpace, PositionGrid};
 use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 use wayfix_sensor_log::{EncodedImage, FoxgloveMessageWriter, MessageSinks, Record, RecordData, Stamp};
+use wayfix_system_core::EstimateWriter;
 
 use super::{
     DescriptorKind, LoggedView, LoggedViews,
@@ -10,7 +11,6 @@ use super::{
     logged::MAX_SIDE,
     plots::{BEST, CELL, TRUTH, belief_map, shade},
 };
-use crate::system::EstimateWriter;
 
 /// Beliefs over more places are drawn up to this product of frames and places.
 const MAX_SHOWN: usize = 4_000_000;

@@ -7,7 +7,8 @@ use wayfix_condensation::{
 /// Parameters of `wayfix run views`, independent of the scene.
 ///
 /// ```
-/// use wayfix_systems::{settings::from_toml, views::ViewsParams};
+/// use wayfix_system_core::settings::from_toml;
+/// use wayfix_systems::views::ViewsParams;
 /// let params = from_toml::<ViewsParams>("[navigator]\nmax_steps = 40")?;
 /// assert_eq!((params.navigator.max_steps, params.navigator.n_confirmations), (40, 3)); // the rest as it was
 /// assert!(from_toml::<ViewsParams>("[navigator]\nmax_stesp = 40").is_err());

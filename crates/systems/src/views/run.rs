@@ -6,9 +6,9 @@ use std::{
 
 use rayon::prelude::*;
 use wayfix_condensation::RgbImage;
+use wayfix_system_core::Stopwatch;
 
 use super::{ViewSystem, ViewSystemConfig, ViewTrial, ViewsError, ViewsParams};
-use crate::system::Stopwatch;
 
 /// Drives between random places of a learned scene.
 #[derive(Clone, Debug)]

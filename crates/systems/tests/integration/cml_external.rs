@@ -8,12 +8,10 @@ use wayfix_appearance_cml::{LocalizerParams, PanoramaDescriptorParams};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{LogOpenOptions, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, open};
 use wayfix_slam_ekf::ExternalParams;
-use wayfix_systems::{
-    cml::{
-        self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
-        PanoramaMap, ViewDescriptorReader,
-    },
-    system::System,
+use wayfix_system_core::System;
+use wayfix_systems::cml::{
+    self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask, PanoramaMap,
+    ViewDescriptorReader,
 };
 
 const SIGMA: f64 = 0.05;

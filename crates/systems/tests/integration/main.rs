@@ -2,11 +2,4 @@
 
 mod cml_external;
 mod color;
-mod external_sensors;
-mod odometry_faults;
-mod pipeline;
-mod point_params;
-mod slam_system;
-mod smoother;
 mod stop;
-mod walls_resume;

@@ -5,9 +5,9 @@ use std::{ops::ControlFlow, time::Duration};
 use wayfix_condensation::RgbImage;
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp};
+use wayfix_system_core::{RunStep, drive};
 use wayfix_systems::{
     lines::LineExtractionSystem,
-    system::{RunStep, drive},
     views::{DescriptorKind, LightNormalization, ViewSystem, ViewSystemConfig, ViewsParams, ViewsRun},
 };
 

@@ -18,7 +18,7 @@ use wayfix_smoother::{
     Kernel, Method, Params, Stop,
     g2o::{self, G2o, G2oError, PoseGraph, Repair, RigidPose},
 };
-use wayfix_systems::system::Stopwatch;
+use wayfix_system_core::Stopwatch;
 
 /// Optimize a pose graph in the format of g2o: the poses that fit the measurements best.
 ///

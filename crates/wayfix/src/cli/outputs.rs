@@ -6,6 +6,7 @@ use std::{
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{LogFormat, McapMessageSink, MessageSinks};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder};
 
 use super::{common::Common, live::Live};
 use wayfix_evaluation::{
@@ -15,7 +16,6 @@ use wayfix_evaluation::{
         table::TableStyle,
     },
 };
-use wayfix_systems::system::{EstimateDrawer, EstimateRecorder};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";

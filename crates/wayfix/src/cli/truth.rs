@@ -2,9 +2,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use wayfix_sensor_log::{LogFormat, LogOpenOptions, PoseKind, Record, RecordData};
+use wayfix_system_core::check_overlap;
 
 use super::read_problems::read_all;
-use wayfix_systems::system::check_overlap;
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]

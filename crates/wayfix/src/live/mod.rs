@@ -1,7 +1,7 @@
 //! Live view of a run: the messages of the MCAP file, on a WebSocket that Foxglove opens.
 //!
 //! [`LiveServer`] listens, its [`sink`](LiveServer::sink) is one of the [`Sinks`](wayfix_sensor_log::MessageSinks) of an
-//! [`EstimateRecorder`](wayfix_systems::system::EstimateRecorder). The systems do not depend on it. Requires the feature `live`.
+//! [`EstimateRecorder`](wayfix_system_core::EstimateRecorder). The systems do not depend on it. Requires the feature `live`.
 
 mod audience;
 mod backlog;

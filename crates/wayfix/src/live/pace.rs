@@ -1,9 +1,9 @@
 use std::{thread, time::Duration};
 
 use wayfix_sensor_log::Stamp;
+use wayfix_system_core::Stopwatch;
 
 use super::LiveServerError;
-use wayfix_systems::system::Stopwatch;
 
 /// Longest pause between messages; a first stamp of 0 before present-day stamps would pause for decades.
 const LONGEST_PAUSE: Duration = Duration::from_secs(5);

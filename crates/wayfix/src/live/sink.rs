@@ -2,9 +2,9 @@ use std::{sync::Arc, time::Duration};
 
 use foxglove::{Context, WebSocketServerHandle};
 use wayfix_sensor_log::{FoxgloveMessage, FoxgloveMessageSink, LogError, Stamp};
+use wayfix_system_core::Stopwatch;
 
 use super::{PlaybackPace, audience::Audience};
-use wayfix_systems::system::Stopwatch;
 
 /// Minimum period of clock messages to viewers; a viewer that reads more slowly would be disconnected.
 const CLOCK_PERIOD: Duration = Duration::from_millis(20);

@@ -14,9 +14,9 @@ use crate::common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{LogOpenOptions, Record};
-use wayfix_systems::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
-use wayfix_systems::slam::{AssociationRule, SavedMapError, Smoothing};
-use wayfix_systems::system::RunStep;
+use wayfix_slam_system::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
+use wayfix_slam_system::slam::{AssociationRule, SavedMapError, Smoothing};
+use wayfix_system_core::RunStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;

@@ -1,4 +1,4 @@
-//! Relative links in Markdown have targets, and the changelog has a section for unreleased changes.
+//! Relative links in Markdown and named source files have targets, and the changelog has a section for unreleased changes.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -19,6 +19,16 @@ pub(in crate::tidy) fn check(sources: &[Source], paths: &[String]) -> Vec<Findin
                 ));
             }
         }
+        for (line, file) in source_files(&source.text) {
+            if source.path.starts_with("docs/") && !known.contains(&format!("crates/{file}")) {
+                findings.push(Finding::new(
+                    &source.path,
+                    line,
+                    format!("`{file}`"),
+                    "there is no such file below crates",
+                ));
+            }
+        }
     }
     match sources.iter().find(|source| source.path == "CHANGELOG.md") {
         Some(changelog) if changelog.text.lines().any(|line| line.starts_with("## [Unreleased]")) => {}
@@ -30,6 +40,16 @@ pub(in crate::tidy) fn check(sources: &[Source], paths: &[String]) -> Vec<Findin
         )),
     }
     findings
+}
+
+/// Line and path of every source file that is named in code spans, as `crate/src/file.rs`.
+fn source_files(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.lines().enumerate().flat_map(|(index, line)| {
+        let spans = line.split('`').skip(1).step_by(2);
+        spans
+            .filter(|span| span.contains("/src/") && span.ends_with(".rs"))
+            .map(move |span| (index + 1, span))
+    })
 }
 
 /// Line and file of every relative link outside of code; the part after `#` is dropped.
@@ -110,6 +130,16 @@ mod tests {
     fn links_that_lead_nowhere_are_found_with_their_line() {
         let found = complaints("docs/architecture.md", "text\n[readme](README.md)\n");
         assert_eq!(found, ["docs/architecture.md:2: link to `README.md`: there is no such file"]);
+    }
+
+    #[test]
+    fn source_files_that_are_gone_are_found() {
+        let text = "passes `README.md` and\n`kalman/src/gone.rs`\n";
+        let found = complaints("docs/architecture.md", text);
+        assert_eq!(
+            found,
+            ["docs/architecture.md:2: `kalman/src/gone.rs`: there is no such file below crates"]
+        );
     }
 
     #[test]

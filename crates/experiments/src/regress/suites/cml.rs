@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use wayfix_sensor_log::LogOpenOptions;
+use wayfix_system_core::{RunStep, System};
 
 use super::super::PlannedJob;
 use crate::{
@@ -10,12 +11,9 @@ use crate::{
     thinned_positions::ThinnedPositions,
 };
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::{
-    cml::{
-        self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose,
-        CmlSystem, CmlTask, PanoramaMap, ViewDescriptorReader,
-    },
-    system::{RunStep, System},
+use wayfix_systems::cml::{
+    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem,
+    CmlTask, PanoramaMap, ViewDescriptorReader,
 };
 use wayfix_table_log::{PoseTables, PosedFrameFolder};
 

@@ -9,13 +9,11 @@ use wayfix_scene_sim::{
     league::{ExposureMode, LampSetting, LeagueParams},
 };
 use wayfix_sensor_log::{LogOpenOptions, Record};
+use wayfix_system_core::{RunStep, System};
 
 use super::super::PlannedJob;
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::{
-    color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors},
-    system::{RunStep, System},
-};
+use wayfix_systems::color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

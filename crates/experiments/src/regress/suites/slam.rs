@@ -3,16 +3,16 @@ use std::path::PathBuf;
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_sensor_log::{LogOpenOptions, read_relations};
+use wayfix_slam_system::{
+    points::{self, PointSlamParams, PointSystem, RobotProfile},
+    slam::{AssociationRule, SlamEstimateRecorder},
+    walls::{self, WallSlamParams},
+};
+use wayfix_system_core::RunStep;
 
 use super::super::PlannedJob;
 use crate::thinned_positions::ThinnedPositions;
 use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::{
-    points::{self, PointSlamParams, PointSystem, RobotProfile},
-    slam::{AssociationRule, SlamEstimateRecorder},
-    system::RunStep,
-    walls::{self, WallSlamParams},
-};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -68,7 +68,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
 /// A log of laser scans through EKF-SLAM with walls.
 fn with_walls(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let mut params = match &settings.params {
-        Some(file) => wayfix_systems::settings::from_toml(&job.read(file)?)?,
+        Some(file) => wayfix_system_core::settings::from_toml(&job.read(file)?)?,
         None => WallSlamParams::default(),
     };
     let (mut records, read) = wayfix_sensor_log::open(job.log()?, &LogOpenOptions::default())?.read_all();

@@ -8,11 +8,11 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{
     FoxgloveMessageWriter, ImageOutline, LogFormat, McapMessageSink, MessageSinks, Record, RecordData, topics,
 };
+use wayfix_system_core::EstimateWriter;
 use wayfix_visual_tracking::TrackStatus;
 
 use super::super::{TargetTruth, TrackFrameResult, TrackSystem};
 use super::{overlay, run_history::outline};
-use crate::system::EstimateWriter;
 
 /// Writes images with outlines to an MCAP file or to viewers, and boxes to a text in the format of the truth.
 pub struct TrackEstimateRecorder {

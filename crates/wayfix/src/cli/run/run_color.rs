@@ -5,6 +5,7 @@ use wayfix_color_model::LightingPriors;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::terminal::{self, print};
 use wayfix_sensor_log::{LogOpenOptions, Record};
+use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
 
 use super::super::{
     common::Common,
@@ -16,9 +17,8 @@ use super::super::{
 use super::interrupt;
 use crate::commented::commented;
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
-use wayfix_systems::{
-    color::{self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors},
-    system::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay},
+use wayfix_systems::color::{
+    self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors,
 };
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.

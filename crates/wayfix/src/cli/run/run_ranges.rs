@@ -4,10 +4,8 @@ use anyhow::{Result, bail, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use wayfix_evaluation::{report::ReportRun, terminal::print_message};
 use wayfix_sensor_log::LogFormat;
-use wayfix_systems::{
-    ranges,
-    system::{EventCounts, Stopwatch},
-};
+use wayfix_slam_system::ranges;
+use wayfix_system_core::{EventCounts, Stopwatch};
 use wayfix_table_log::RangeRecording;
 
 use super::{

@@ -10,14 +10,14 @@ use wayfix_evaluation::{
 };
 use wayfix_sensor_log::{LogFormat, LogOpenOptions, ReadReport, Record};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
-use wayfix_systems::{
+use wayfix_slam_system::{
     points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
         AssociationRule, FrontEnd, FrontEndState, PeriodicStateSaver, SlamEstimateRecorder, SlamRun,
         SlamState, SlamSystem, Smoothing, StateOf,
     },
-    system::{RunStep, Stopwatch},
 };
+use wayfix_system_core::{RunStep, Stopwatch};
 
 use super::super::{
     common::Common,

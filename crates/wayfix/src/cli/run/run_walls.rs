@@ -3,12 +3,11 @@ use std::{path::Path, process::ExitCode};
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{Log, LogError, LogFormat, PoseRelation, Record, RecordData, read_relations};
-use wayfix_systems::{
-    settings::from_toml,
+use wayfix_slam_system::{
     slam::AssociationRule,
-    system::{LogOverview, without_odometry_delay},
     walls::{self, SavedWallMap, WallSlamParams},
 };
+use wayfix_system_core::{LogOverview, settings::from_toml, without_odometry_delay};
 
 use super::{
     super::input::read_toml,

@@ -1,0 +1,145 @@
+use std::borrow::Borrow;
+
+use anyhow::{Result, bail};
+use wayfix_estimation_traits::Manifold;
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
+use wayfix_sensor_log::{Record, RecordData, TrueWall};
+use wayfix_slam_ekf::LandmarkId;
+use wayfix_system_core::{
+    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_reference, warn_of_start,
+    without_odometry_delay,
+};
+
+use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
+use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose};
+
+/// A log of scans that went through EKF-SLAM with walls.
+pub type WallRun = SlamRun<WallSlamFrontEnd, Vec<TrueWall>>;
+
+/// Runs EKF-SLAM with walls over the records of a log and shows each step to `observe`.
+///
+/// The start pose is the true pose at the first scan, or led back to it by odometry from the first true pose after it, else the origin.
+/// Nothing else ties the run to the truth.
+///
+/// # Errors
+/// When there is no odometry, no scan, or a parameter is out of range.
+pub fn run(
+    records: &[Record],
+    params: &WallSlamParams,
+    observe: impl FnMut(RunStep<'_, WallSystem>),
+) -> Result<WallRun> {
+    let in_time = without_odometry_delay(records, params.odometry_delay);
+    run_streamed(records, in_time.iter(), params, observe)
+}
+
+/// As [`run`], with the records one by one: a long log need not be kept. `overview` is the same log, whose scans may be without ranges; a delay of
+/// odometry was taken out of `records` already.
+///
+/// # Errors
+/// Returns the errors of [`run`].
+pub fn run_streamed<R: Borrow<Record>>(
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
+    params: &WallSlamParams,
+    observe: impl FnMut(RunStep<'_, WallSystem>),
+) -> Result<WallRun> {
+    let first = |is: fn(&RecordData) -> bool| overview.iter().find(|record| is(&record.data));
+    let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
+        bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
+    };
+    // A log may tell of the same motion twice.
+    let moves_by_velocity = first(|data| matches!(data, RecordData::OdometryIncrement(_))).is_none();
+    if moves_by_velocity && first(|data| matches!(data, RecordData::Velocity(_))).is_none() {
+        bail!(
+            "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
+        );
+    }
+    check_overlap(overview, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
+    let track = ReferencePath::from_records_or_estimates(overview);
+    let known = TrueStartPose::at(scan.stamp, &track, overview).filter(|_| params.start_pose.is_none());
+    let start = start_pose(params.start_pose, known);
+    let laser = params.laser_pose.or_else(|| laser_mount(overview));
+    let placed = WallSlamParams { laser_pose: laser, ..params.clone() };
+    let mut system = WallSystem::with_walls(placed, start, track.noise(), moves_by_velocity)?;
+    system.front_end.laser_follows_log = params.laser_pose.is_none();
+    if params.start_pose.is_none() {
+        warn_of_start(system.events(), known, &track);
+    }
+    let true_walls = truth::true_walls(overview);
+    for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
+    {
+        system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
+    }
+    let between = |[start, end]: [[f64; 2]; 2]| {
+        truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
+    };
+    system.add_given_anchors(&params.anchors, None, between)?;
+    drive_through(system, track, true_walls, records, observe)
+}
+
+/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `association` is the rule
+/// that was asked for, if any; `overview` and `records` are as in [`run_streamed`].
+///
+/// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
+///
+/// # Errors
+/// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
+pub fn run_on<R: Borrow<Record>>(
+    saved: SavedWallMap,
+    overview: &[Record],
+    records: impl IntoIterator<Item = R>,
+    params: &WallSlamParams,
+    association: Option<AssociationRule>,
+    observe: impl FnMut(RunStep<'_, WallSystem>),
+) -> Result<WallRun> {
+    let system = WallSystem::resume(params.clone(), saved, association)?;
+    let track = ReferencePath::from_records_or_estimates(overview);
+    drive_through(system, track, truth::true_walls(overview), records, observe)
+}
+
+fn drive_through<R: Borrow<Record>>(
+    system: WallSystem,
+    truth: ReferencePath,
+    true_map: Vec<TrueWall>,
+    records: impl IntoIterator<Item = R>,
+    observe: impl FnMut(RunStep<'_, WallSystem>),
+) -> Result<WallRun> {
+    let delay = system.front_end.params.odometry_delay;
+    let mut run = SlamRun::new(system, &truth, true_map).through(records, observe);
+    if run.system.stamped_estimates().is_empty() {
+        let n_before = run.events().get("record_before_resume");
+        bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
+    }
+    run.system.front_end.turns.warn_of_lag(&mut run.system.estimator.events, delay);
+    let samples = run.samples();
+    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
+        sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
+    };
+    if !samples.is_empty() && samples.iter().all(is_odometry) {
+        run.truth = ReferencePath::default();
+        run.events().warn(
+            "reference_is_odometry",
+            "the poses of the log are its odometry: there are no figures of accuracy",
+        );
+    }
+    warn_of_reference(run.system.events(), &run.truth);
+    Ok(run)
+}
+
+/// Where the log says that the laser is first; the system follows a laser that moves.
+fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
+    records.iter().find_map(|record| match record.data {
+        RecordData::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),
+        _ => None,
+    })
+}
+
+/// Below this distance poses are the same but for printed digits, m and rad.
+const SAME: f64 = 1e-3;
+
+impl WallRun {
+    /// The distance of each estimated wall from its true one, squared, in units of its covariance: see [`summarize`](super::summarize).
+    pub(super) fn wall_nees(&self) -> Vec<f64> {
+        self.system.filter().landmarks().filter_map(|wall| truth::nees(&wall, &self.true_map)).collect()
+    }
+}

@@ -1,0 +1,9 @@
+//! Tests of the public interface of `wayfix-slam-system`, in one program: it is linked once.
+
+mod external_sensors;
+mod odometry_faults;
+mod overview;
+mod point_params;
+mod slam_system;
+mod smoother;
+mod walls_resume;

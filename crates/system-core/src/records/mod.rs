@@ -1,0 +1,21 @@
+//! Checks of the records of a log before a filter takes them, and the events that count what is refused.
+
+mod events;
+mod heading_sign;
+mod held_velocity;
+mod motion_between;
+mod odometry_delay;
+mod odometry_lag;
+mod overlap;
+mod overview;
+mod plausible_increment;
+
+pub use events::{EventCounts, RefusedRecord};
+pub use heading_sign::HeadingSignTest;
+pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
+pub use motion_between::motion_between;
+pub use odometry_delay::without_odometry_delay;
+pub use odometry_lag::TurnHistory;
+pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
+pub use overview::{LogOverview, OVERVIEW_HEAD};
+pub use plausible_increment::IncrementPlausibilityCheck;

@@ -1,5 +1,0 @@
-//! Atomic file writes.
-
-mod atomic;
-
-pub(crate) use atomic::write_atomically;
