@@ -121,5 +121,9 @@ pub(super) fn show(report: &FullReport, out: &Path, in_full: bool) -> Result<Exi
     let style = TableStyle::of_stdout();
     print(if in_full { table::report(report, style) } else { failures(report, style) })?;
     print(format!("{0}/index.html  {0}/report.json\n", out.display()))?;
-    Ok(if report.tally().all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let tally = report.tally();
+    if (tally.passed, tally.failed) == (0, 0) {
+        print("No figure has a bound: nothing is judged, and the exit code is 1.\n")?;
+    }
+    Ok(if tally.all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -66,6 +66,26 @@ fn sun_patches_that_move_past_a_standing_robot() {
     check("moving sun", &localize(&drive(&venue, N_FRAMES, standing(), light, |_, _| {})));
 }
 
+/// A walk in the sun, which a cloud hides while disturbed: every image is all shade then.
+fn cloud(hall: u64) -> Vec<Judged> {
+    let venue = sunny_hall(hall);
+    let mut cloudy = venue.sunny.clone();
+    cloudy.beam *= 0.0;
+    cloudy.hall.bounce = venue.bright.bounce;
+    localize(&walk(&venue, [&venue.sunny, &cloudy], |_| {}))
+}
+
+#[test]
+fn cloud_that_hides_the_sun() {
+    check("cloud", &cloud(1));
+}
+
+#[test]
+fn cloud_after_which_the_pose_stays_doubtful() {
+    let frames = cloud(2);
+    assert!(n_wrongly_tracked(&frames) <= 3, "cloud: sure of a wrong pose\n{}", table(&frames));
+}
+
 #[test]
 fn light_switched_off_in_mid_drive() {
     let (venue, dark) = (hall(2), LampLight::default());
