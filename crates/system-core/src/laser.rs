@@ -4,7 +4,7 @@ use wayfix_sensor_log::LaserScan;
 const FARTHEST_ECHO: f64 = 1e5;
 
 /// The largest range of a scan that is an echo; `range_max` itself is no echo.
-pub fn largest_echo(scan: &LaserScan) -> f64 {
+pub fn max_echo_range(scan: &LaserScan) -> f64 {
     scan.range_max.next_down().min(FARTHEST_ECHO)
 }
 
@@ -21,7 +21,7 @@ mod tests {
             beam_period: 0.0,
             ranges: vec![1.0],
         };
-        assert_eq!(largest_echo(&scan(f64::INFINITY)), FARTHEST_ECHO);
-        assert!(largest_echo(&scan(8.0)) < 8.0);
+        assert_eq!(max_echo_range(&scan(f64::INFINITY)), FARTHEST_ECHO);
+        assert!(max_echo_range(&scan(8.0)) < 8.0);
     }
 }

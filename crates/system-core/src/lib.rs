@@ -29,14 +29,14 @@ pub use atomic::write_atomically;
 pub use drive::{RunStep, drive};
 pub use estimate_recorder::{EstimateDrawer, EstimateRecorder, EstimateWriter, OTHER_POSES};
 pub use known_start::TrueStartPose;
-pub use laser::largest_echo;
-pub use measurement::in_map;
+pub use laser::max_echo_range;
+pub use measurement::map_measurement;
 pub use records::{
-    EventCounts, FASTEST, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck,
-    LogOverview, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, RefusedRecord, TurnHistory, VELOCITY_TIMEOUT,
+    EventCounts, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck, LogOverview,
+    MAX_SPEED, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, RefusedRecord, TurnHistory, VELOCITY_TIMEOUT,
     check_overlap, check_velocity, motion_between, without_odometry_delay,
 };
-pub use robot_drawing::{PathPieces, ellipse, write_pose, write_robot};
+pub use robot_drawing::{PathSegmentWriter, ellipse_drawing, write_pose, write_robot};
 pub use system::{MOST_ESTIMATES, System};
 pub use truth_warnings::{warn_of_no_overlap, warn_of_reference, warn_of_start};
 pub use wayfix_evaluation::terminal::Stopwatch;

@@ -9,7 +9,7 @@ use wayfix_slam_ekf::{
 ///
 /// # Errors
 /// Returns an error if the frame, the datum or the covariance is unknown.
-pub fn in_map(
+pub fn map_measurement(
     measured: &PoseMeasurement,
     params: &ExternalParams,
     antenna: Vector2<f64>,

@@ -25,12 +25,12 @@ pub fn write_robot(
     write_pose(writer, stamp, pose)?;
     let rotation = pose.rotation_matrix();
     let covariance = rotation * covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
-    let robot = ellipse("robot".to_owned(), ROBOT_COLOR, [pose.x(), pose.y()], covariance);
+    let robot = ellipse_drawing("robot".to_owned(), ROBOT_COLOR, [pose.x(), pose.y()], covariance);
     writer.scene_update("/estimate/robot", stamp, topics::WORLD_FRAME, robot.as_slice())
 }
 
 /// Nothing while the covariance is singular (a start pose known exactly).
-pub fn ellipse(
+pub fn ellipse_drawing(
     id: String,
     color: [f64; 4],
     center: [f64; 2],
@@ -47,7 +47,7 @@ pub fn ellipse(
 
 /// The path in pieces: a message holds the poses since the last one, so that the path of a long log is written once.
 #[derive(Default)]
-pub struct PathPieces {
+pub struct PathSegmentWriter {
     /// Begins with the end of the last piece.
     piece: Vec<[f64; 2]>,
     n_pieces: usize,
@@ -56,7 +56,7 @@ pub struct PathPieces {
 /// Poses in a piece; the first ones are shorter, so that a path begins soon.
 const PIECE: usize = 20;
 
-impl PathPieces {
+impl PathSegmentWriter {
     /// Takes the next pose, and writes the piece when it is full. Viewers keep the earlier pieces, which have other names.
     pub fn push(
         &mut self,

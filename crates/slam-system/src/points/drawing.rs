@@ -1,6 +1,6 @@
 use wayfix_sensor_log::{DrawingShape, LogError, Stamp, ViewerDrawing, topics};
 use wayfix_slam_ekf::EkfSlam;
-use wayfix_system_core::{EstimateWriter, ellipse};
+use wayfix_system_core::{EstimateWriter, ellipse_drawing};
 
 use super::PointSensor;
 
@@ -29,7 +29,7 @@ fn map(filter: &EkfSlam<PointSensor>) -> (Vec<[f64; 2]>, Vec<ViewerDrawing>) {
             shape,
         });
         let id = format!("ellipse {}", landmark.id);
-        drawings.extend(ellipse(id, LANDMARK_COLOR, position, landmark.covariance));
+        drawings.extend(ellipse_drawing(id, LANDMARK_COLOR, position, landmark.covariance));
     }
     (points, drawings)
 }

@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 use nalgebra::DefaultAllocator;
 use wayfix_sensor_log::{LogError, Record};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
-use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathSegmentWriter, write_robot};
 
 use super::{FrontEnd, SlamSystem};
 
@@ -13,7 +13,7 @@ pub type SlamEstimateRecorder<F> = EstimateRecorder<SlamDrawingState<F>>;
 /// What [`SlamEstimateRecorder`] has drawn so far.
 pub struct SlamDrawingState<F> {
     n_written: usize,
-    path: PathPieces,
+    path: PathSegmentWriter,
     /// Number of estimates at which the map is written next.
     next_map: usize,
     front_end: PhantomData<fn() -> F>,
@@ -21,7 +21,7 @@ pub struct SlamDrawingState<F> {
 
 impl<F> Default for SlamDrawingState<F> {
     fn default() -> Self {
-        Self { n_written: 0, path: PathPieces::default(), next_map: 1, front_end: PhantomData }
+        Self { n_written: 0, path: PathSegmentWriter::default(), next_map: 1, front_end: PhantomData }
     }
 }
 

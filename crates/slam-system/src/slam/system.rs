@@ -7,7 +7,7 @@ use wayfix_slam_ekf::{
     AnchorError, AnchorParams, EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MapMeasurement,
     MeasurementDim, RobotDim, SlamAlloc, SlamError, SlamSnapshot, observability::ObservabilityRecorder,
 };
-use wayfix_system_core::{EventCounts, HeadingSignTest, System, in_map};
+use wayfix_system_core::{EventCounts, HeadingSignTest, System, map_measurement};
 
 use super::{
     AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
@@ -110,7 +110,7 @@ where
             self.estimator.events.count("measurement_ignored");
             return Ok(());
         }
-        let measurement = in_map(measured, params, antenna).map_err(|error| error.to_string())?;
+        let measurement = map_measurement(measured, params, antenna).map_err(|error| error.to_string())?;
         if self.last_increment.is_some_and(|last| last < stamp) {
             self.waiting.push((stamp, measurement));
             return Ok(());

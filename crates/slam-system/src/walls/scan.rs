@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtraction, LineExtractionError, LineExtractor, Scan};
 use wayfix_scan_match::{ScanMatchError, ScanPointCloud};
 use wayfix_sensor_log::{LaserScan, Stamp};
-use wayfix_system_core::largest_echo;
+use wayfix_system_core::max_echo_range;
 
 /// A scan that waits for the odometry that leads up to it, and where the laser was.
 pub(super) struct WaitingScan {
@@ -52,7 +52,7 @@ impl PlacedScan {
     /// The points of the scan in the frame of the robot at the first beam.
     pub(super) fn cloud(&self) -> Result<ScanPointCloud, ScanMatchError> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = &self.scan;
-        let (step, max_range) = (self.beam_step.as_ref(), largest_echo(&self.scan));
+        let (step, max_range) = (self.beam_step.as_ref(), max_echo_range(&self.scan));
         let cloud =
             ScanPointCloud::from_ranges_deskewed(*angle_min, *angle_increment, ranges, max_range, step)?;
         Ok(cloud.transformed(&self.laser))
@@ -62,7 +62,7 @@ impl PlacedScan {
     pub(super) fn walls(&self, extractor: &mut LineExtractor) -> Result<LineExtraction, LineExtractionError> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = &self.scan;
         let (angle_min, angle_increment) = (*angle_min, *angle_increment);
-        let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(&self.scan) };
+        let scan = Scan { angle_min, angle_increment, ranges, max_range: max_echo_range(&self.scan) };
         let step = self.beam_step.map(|step| Isometry2::new(step.translation, step.heading()));
         extractor.extract_deskewed(&scan, step.as_ref())
     }

@@ -4,21 +4,21 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Stamp, Velocity};
 
 /// Largest accepted speed, m/s, and turn rate, rad/s. An impossible velocity would move the robot until the next one.
-pub const FASTEST: f64 = 1e3;
+pub const MAX_SPEED: f64 = 1e3;
 
 /// Default time after its stamp for which a velocity holds, s: the command time-out of ROS 2 navigation.
 pub const VELOCITY_TIMEOUT: f64 = 1.0;
 
-/// Accepts a velocity that is finite and at most [`FASTEST`].
+/// Accepts a velocity that is finite and at most [`MAX_SPEED`].
 ///
 /// # Errors
 /// Returns a description of a rejected velocity.
 pub fn check_velocity(velocity: Velocity) -> Result<Velocity, String> {
     let Velocity { linear, angular } = velocity;
-    if linear.abs() <= FASTEST && angular.abs() <= FASTEST {
+    if linear.abs() <= MAX_SPEED && angular.abs() <= MAX_SPEED {
         return Ok(velocity);
     }
-    Err(format!("a velocity of {linear:.3e} m/s and {angular:.3e} rad/s is beyond {FASTEST} or not finite"))
+    Err(format!("a velocity of {linear:.3e} m/s and {angular:.3e} rad/s is beyond {MAX_SPEED} or not finite"))
 }
 
 /// A velocity that holds until the next one, for a limited time.

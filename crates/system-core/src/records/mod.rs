@@ -12,7 +12,7 @@ mod plausible_increment;
 
 pub use events::{EventCounts, RefusedRecord};
 pub use heading_sign::HeadingSignTest;
-pub use held_velocity::{FASTEST, HeldVelocity, HeldVelocityMotion, VELOCITY_TIMEOUT, check_velocity};
+pub use held_velocity::{HeldVelocity, HeldVelocityMotion, MAX_SPEED, VELOCITY_TIMEOUT, check_velocity};
 pub use motion_between::motion_between;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::TurnHistory;

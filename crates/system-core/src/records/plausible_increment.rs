@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Stamp;
 
-use crate::FASTEST;
+use crate::MAX_SPEED;
 
 /// Largest accepted distance between two records, m, if the time between them is unknown.
 const FARTHEST: f64 = 1e5;
@@ -18,10 +18,10 @@ impl IncrementPlausibilityCheck {
     /// Checks an increment that ends at `stamp` and begins at the last accepted one.
     ///
     /// # Errors
-    /// Returns a description if the increment is not finite or exceeds [`FASTEST`]; the last accepted stamp stays.
+    /// Returns a description if the increment is not finite or exceeds [`MAX_SPEED`]; the last accepted stamp stays.
     pub fn check(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         let seconds = self.last.map(|last| stamp.seconds_since(last).max(0.0));
-        let farthest = seconds.map_or(FARTHEST, |seconds| (FASTEST * (seconds + JITTER)).min(FARTHEST));
+        let farthest = seconds.map_or(FARTHEST, |seconds| (MAX_SPEED * (seconds + JITTER)).min(FARTHEST));
         let (x, y, turn) = (increment.x(), increment.y(), increment.heading());
         if x.hypot(y) <= farthest && turn.is_finite() {
             self.last = Some(stamp);

@@ -1,5 +1,5 @@
 use wayfix_sensor_log::{LogError, Record, topics};
-use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathPieces, write_pose};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathSegmentWriter, write_pose};
 
 use super::CmlSystem;
 
@@ -10,7 +10,7 @@ pub type CmlEstimateRecorder = EstimateRecorder<CmlDrawingState>;
 #[derive(Default)]
 pub struct CmlDrawingState {
     n_written: usize,
-    path: PathPieces,
+    path: PathSegmentWriter,
     /// Number of views at which the references are written next.
     next_map: usize,
 }

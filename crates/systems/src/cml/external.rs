@@ -6,7 +6,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::ChiSquaredGate;
 use wayfix_sensor_log::{PoseMeasurement, Stamp};
 use wayfix_slam_ekf::{ExternalParams, MapMeasurement};
-use wayfix_system_core::{EventCounts, HeadingSignTest, in_map};
+use wayfix_system_core::{EventCounts, HeadingSignTest, map_measurement};
 
 use super::{CmlSystem, PanoramaLocalizer};
 
@@ -40,7 +40,7 @@ impl CmlSystem {
             self.events.count("measurement_ignored");
             return Ok(());
         }
-        let measurement = in_map(measured, &self.external.params, Vector2::zeros());
+        let measurement = map_measurement(measured, &self.external.params, Vector2::zeros());
         let measurement = measurement.map_err(|error| error.to_string())?;
         if self.external.last_increment.is_some_and(|last| last < stamp) {
             self.external.waiting.push((stamp, measurement));

@@ -1,5 +1,5 @@
 use wayfix_sensor_log::{LogError, Record, topics};
-use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathPieces, write_robot};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathSegmentWriter, write_robot};
 
 use super::ColorSystem;
 
@@ -10,7 +10,7 @@ pub type ColorEstimateRecorder = EstimateRecorder<ColorDrawingState>;
 #[derive(Default)]
 pub struct ColorDrawingState {
     n_written: usize,
-    path: PathPieces,
+    path: PathSegmentWriter,
 }
 
 /// Particles that are written: with all of them the file would be larger than twice the log.

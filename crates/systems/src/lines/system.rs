@@ -3,7 +3,7 @@ use std::{convert::Infallible, time::Duration};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
-use wayfix_system_core::{EventCounts, Stopwatch, System, largest_echo};
+use wayfix_system_core::{EventCounts, Stopwatch, System, max_echo_range};
 
 use super::totals::LineTotals;
 use wayfix_evaluation::plot::Decimated;
@@ -85,7 +85,7 @@ impl LineExtractionSystem {
         if echoes.is_empty() {
             return Err(format!("none of {} beams came back", scan.ranges.len()));
         }
-        let max_range = largest_echo(scan);
+        let max_range = max_echo_range(scan);
         let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
         let scan = Scan { angle_min: *angle_min, angle_increment: *angle_increment, ranges, max_range };
         let stopwatch = Stopwatch::start();
