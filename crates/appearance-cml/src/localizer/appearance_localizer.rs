@@ -204,8 +204,12 @@ where
                 self.learn(view, &motion, &mut events)?; // Eqs. 11-19
             }
         }
-        let n_detections = matched.map_or(0, |matched| matched.n_detections);
-        Ok(ViewUpdateOutcome { events, estimate: self.one_place().cloned(), n_detections })
+        Ok(ViewUpdateOutcome {
+            events,
+            estimate: self.one_place().cloned(),
+            n_detections: matched.as_ref().map_or(0, |matched| matched.n_detections),
+            best_match: matched.as_ref().and_then(|matched| matched.best()).cloned(),
+        })
     }
 
     /// Learns that `view` is seen from the known `pose`. The belief stays.

@@ -1,4 +1,5 @@
 use nalgebra::{Matrix3, Vector3};
+use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::belief::Belief;
@@ -17,6 +18,14 @@ const FLOOR: f64 = GROUP_SIZE as f64 / (GROUP_SIZE + N_FAR) as f64;
 pub(super) struct ViewMatch {
     pub(super) likelihood: GaussianMixtureLikelihood,
     pub(super) n_detections: usize,
+}
+
+impl ViewMatch {
+    /// The highest peak; the first of equal ones.
+    pub(super) fn best(&self) -> Option<&Gaussian<Pose2<f64>>> {
+        let higher = |best: &&PoseHypothesis, next: &&PoseHypothesis| best.weight.total_cmp(&next.weight);
+        self.likelihood.peaks.iter().rev().max_by(higher).map(|peak| &peak.gaussian)
+    }
 }
 
 impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {

@@ -27,7 +27,7 @@ pub enum LocalizerEvent {
 /// The result of one view.
 ///
 /// ```
-/// let nothing = wayfix_appearance_cml::ViewUpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0 };
+/// let nothing = wayfix_appearance_cml::ViewUpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0, best_match: None };
 /// assert!(nothing.estimate.is_none());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -38,4 +38,6 @@ pub struct ViewUpdateOutcome {
     pub estimate: Option<Gaussian<Pose2<f64>>>,
     /// Number of places that match the view.
     pub n_detections: usize,
+    /// The pose at which this view alone matches the map best, with covariance in its body frame: a measurement without odometry, for other estimators.
+    pub best_match: Option<Gaussian<Pose2<f64>>>,
 }

@@ -56,6 +56,8 @@ pub struct CmlViewResult {
     pub nearest: Option<(f64, [f64; 2])>,
     /// Number of places that match the view.
     pub n_detections: usize,
+    /// The pose at which the view alone matches the map best.
+    pub best_match: Option<Gaussian<Pose2<f64>>>,
     /// Number of references in the map after the view.
     pub n_references: usize,
     /// Computing time after decoding.
@@ -191,6 +193,7 @@ impl CmlSystem {
             odometry: self.odometry,
             nearest,
             n_detections: outcome.n_detections,
+            best_match: outcome.best_match,
             n_references: self.localizer.map().len(),
             step,
         };

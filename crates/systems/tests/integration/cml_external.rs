@@ -6,7 +6,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use wayfix_appearance_cml::{LocalizerParams, PanoramaDescriptorParams};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogOpenOptions, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, open};
+use wayfix_sensor_log::{
+    LogOpenOptions, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, open, topics,
+};
 use wayfix_slam_ekf::ExternalParams;
 use wayfix_system_core::System;
 use wayfix_systems::cml::{
@@ -29,7 +31,10 @@ fn localized(records: Vec<Record>) -> CmlRun {
 }
 
 fn localized_by(records: Vec<Record>, localizer: LocalizerParams) -> CmlRun {
-    let external = ExternalParams { frames: vec!["map".to_owned()], ..ExternalParams::default() };
+    let external = ExternalParams {
+        frames: vec!["map".to_owned(), topics::WORLD_FRAME.to_owned()],
+        ..ExternalParams::default()
+    };
     let mut params = CmlParams { external, localizer, ..CmlParams::default() };
     let plan = CmlRunPlan::of_log(records, 0, &mut params, &CameraViewGeometry::default()).expect("a plan");
     let start = cml::first_true_pose(&plan.records).expect("truth");
@@ -116,6 +121,44 @@ fn as_published_measurements_are_intersected() {
         "{accepted} of {n}: {error:.3} m, by default {default_error:.3} m, without {error_without:.3} m"
     );
     assert!(accepted + 1 >= n && error < error_without && error != default_error);
+}
+
+/// Stand-ins for two cameras: every other image of one.
+fn of_camera(records: &[Record], camera: usize) -> Vec<Record> {
+    let mut n_images = 0;
+    let is_kept = |record: &&Record| {
+        n_images += usize::from(matches!(record.data, RecordData::Image(_)));
+        !matches!(record.data, RecordData::Image(_)) || n_images % 2 == camera
+    };
+    records.iter().filter(is_kept).cloned().collect()
+}
+
+/// The matches of a camera whose map was learned with true poses correct the run of another, whose map grows.
+#[test]
+fn a_second_camera_corrects_the_first() {
+    let records = drive();
+    let mut params = CmlParams::default();
+    let second = of_camera(&records, 1);
+    let plan = CmlRunPlan::of_log(second, 2, &mut params, &CameraViewGeometry::default()).expect("a plan");
+    let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
+    let system = CmlSystem::new(&params, reader, PanoramaMap::default()).expect("valid parameters");
+    let start = CmlStartPose::Anywhere;
+    let matched = cml::run(system, &plan, CmlTask::LearnThenLocalize, start, &params, 1, |_| {});
+    let matched = matched.expect("usable views");
+    let measurements = matched.system.frames().iter().filter_map(|frame| {
+        let data = RecordData::PoseMeasurement(cml::measurement(frame.best_match.as_ref()?));
+        Some(Record { stamp: frame.stamp, data })
+    });
+    let first = of_camera(&records, 0);
+    let without = mean_error(&localized(first.clone()));
+    let mut both: Vec<Record> = first.into_iter().chain(measurements).collect();
+    both.sort_by_key(|record| record.stamp);
+    let mut run = localized(both);
+    let [accepted, gated] =
+        ["measurement_accepted", "measurement_gated"].map(|event| run.system.events().get(event));
+    let error = mean_error(&run);
+    println!("{accepted} accepted, {gated} gated, error {error:.3} m, without {without:.3} m");
+    assert!(accepted > 10 * gated && error < without);
 }
 
 #[test]
