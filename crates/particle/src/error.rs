@@ -51,7 +51,7 @@ pub enum ParticleError {
         /// How many there are.
         n_particles: usize,
     },
-    /// A motion led to a state that is not finite.
+    /// A motion gave a state that is not finite.
     #[error("state {index} is not finite")]
     State {
         /// Whose.

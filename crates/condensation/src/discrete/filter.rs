@@ -85,7 +85,7 @@ impl DiscreteFilter {
         Ok(())
     }
 
-    /// Moves a share of the belief to everywhere: what the robot being carried off, or a wrong model, would do.
+    /// Replaces a share of the belief by the uniform distribution, for a kidnapping or a wrong model.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when `share` is no probability.

@@ -3,7 +3,7 @@ use image::RgbImage;
 use crate::discrete::PositionGrid;
 use crate::{CondensationError, DiscreteStateSpace, View, ViewGrid};
 
-/// A global feature of a view: a few numbers that tell views apart. Implement the first two methods to use your own.
+/// A global feature of a view: a few numbers that distinguish views. Implement the first two methods to use your own.
 ///
 /// **Laws**: `extract` writes every component, finite ones; [`extract_all`](Self::extract_all) gives the same numbers to within rounding.
 pub trait GlobalDescriptor: Sync {

@@ -1,7 +1,7 @@
 /// Figures by the end of their names, or by the beginning where it ends in `_`; the first match counts.
 const MEANINGS: [(&str, &str); 87] = [
     ("n_localized_views", "views after which the pose was estimated"),
-    ("unimodal_share", "share of the views after which one place only was believed"),
+    ("unimodal_share", "share of the views after which only one place had a high probability"),
     ("n_labelled_images", "images with true labels of their pixels"),
     ("factorization_gflop", "10⁹ additions and multiplications of one sparse Cholesky factorization"),
     ("range_bias_m", "estimated constant error of the ranges"),

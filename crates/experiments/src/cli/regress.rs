@@ -19,7 +19,7 @@ use crate::regress::{
 ///
 /// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). The exit code is 0 if every
 /// figure is within its bounds, else 1. OUT/index.html shows trajectories, maps and figures; it is written after every run, so that
-/// Ctrl-C leaves the finished runs and --resume goes on.
+/// Ctrl-C keeps the finished runs and --resume continues.
 ///
 /// Without names the stored logs of all suites run. A suite, a run or --all runs the experiments too, and public recordings if available.
 #[derive(clap::Args)]

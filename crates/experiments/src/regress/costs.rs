@@ -40,7 +40,7 @@ impl EstimatedTime {
             _ if n_unknown == n_runs => "how long they take is not known".to_owned(),
             0 => format!("about {minutes:.1} minutes on {n_threads} threads"),
             n => {
-                format!("about {minutes:.1} minutes on {n_threads} threads, and {n} of them nobody has timed")
+                format!("about {minutes:.1} minutes on {n_threads} threads, {n} of them without a known time")
             }
         };
         format!("{n_runs} runs, {time}")
@@ -103,14 +103,14 @@ fn name(run: &SeededRun) -> String {
     format!("{}/{}", run.suite, run.run)
 }
 
-/// Seconds that this thread has computed so far, which other programs do not lengthen; 0 where the system does not tell.
+/// Seconds that this thread has computed so far, which other programs do not lengthen; 0 where the system does not report it.
 pub(crate) fn thread_seconds() -> f64 {
     let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = text.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
     nanoseconds.map_or(0.0, |nanoseconds| 1e-9 * nanoseconds)
 }
 
-/// Seconds of a short computation, the shortest of several: the measure of a machine. 0 where the system does not tell.
+/// Seconds of a short computation, the shortest of several: the measure of a machine. 0 where the system does not report it.
 pub(crate) fn calibration_seconds() -> f64 {
     const REPEATS: usize = 5;
     let once = |_| {

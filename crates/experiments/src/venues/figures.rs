@@ -73,7 +73,7 @@ pub(super) fn plots(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<SvgPl
         PlotSeries::new(method.title(), points.collect())
     });
     let rates = LinePlot {
-        title: "Ball and carpet told apart in a venue left out".to_owned(),
+        title: "Separation of ball and carpet in a venue left out".to_owned(),
         x_label: "venue, in the order of the ellipses' legend".to_owned(),
         y_label: "share of pixels".to_owned(),
         series: series.collect(),

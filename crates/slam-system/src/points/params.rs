@@ -70,7 +70,7 @@ pub struct PointSlamParams {
     pub smoothing: Smoothing,
 }
 
-/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
+/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MountingParams {
@@ -78,7 +78,7 @@ pub struct MountingParams {
     pub sensor_x: f64,
     /// The range-bearing sensor, m.
     pub sensor_y: f64,
-    /// Which way it looks, rad; 0 ahead, counter-clockwise.
+    /// Its direction, rad; 0 ahead, counter-clockwise.
     pub sensor_heading: f64,
     /// The antenna whose positions the log has, m.
     pub antenna_x: f64,
@@ -132,7 +132,7 @@ pub enum RobotProfile {
 }
 
 impl RobotProfile {
-    /// The robot that recorded a log, as far as the format tells that it was first stored in.
+    /// The robot that recorded a log, as far as the first format of the log shows it.
     pub fn of_log(meta: &LogMetadata) -> Self {
         match meta.first_format() {
             LogFormat::Utias => Self::Utias,
@@ -253,7 +253,7 @@ impl PointSlamParams {
                 },
                 velocity_noise: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
-                    // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
+                    // Errors are correlated in time and have heavy tails, so the threshold is the mean NIS, d² = 2.
                     outlier_rule: OutlierRule::Downweight,
                     gate_probability: 0.632,
                     // The tubes of a group stand 0.18-0.3 m apart.

@@ -56,13 +56,13 @@ pub enum Smoothing {
     /// There is none.
     #[default]
     Off,
-    /// A batch at the end, which tells how far the filter is from the optimum.
+    /// A batch at the end, which shows the distance of the filter from the optimum.
     Reference,
     /// With a fixed lag: its estimates are the result.
     FixedLag,
 }
 
-/// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance carried along a motion.
+/// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance transported along a motion.
 pub(crate) fn carried(covariance: &Matrix3<f64>, motion: &Pose2<f64>) -> Matrix3<f64> {
     use wayfix_estimation_traits::LieGroup;
     let carry = motion.inverse().adjoint();

@@ -15,7 +15,7 @@ use super::{
     warn_of_an_empty_map,
 };
 
-/// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
+/// The result of EKF-SLAM on a log, with the truth of the log; `T` is the true map.
 pub struct SlamRun<F: FrontEnd, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,

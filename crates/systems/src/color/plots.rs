@@ -91,7 +91,7 @@ pub fn film<R: Borrow<Record>>(
 /// Display colour of what has no class.
 const BACKGROUND: [u8; 3] = [96, 96, 100];
 
-/// How each colour of the map looks: by its name, others by their order.
+/// The plotted colour of each colour of the map: by its name, others by their order.
 fn paints(map: &ColorMap) -> Vec<[u8; 3]> {
     const OTHERS: [[u8; 3]; 4] = [[40, 140, 60], [250, 210, 40], [245, 130, 30], [50, 70, 200]];
     let paint = |(k, name): (usize, &String)| named_color(name).unwrap_or(OTHERS[k % OTHERS.len()]);

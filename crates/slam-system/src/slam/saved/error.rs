@@ -25,7 +25,7 @@ pub enum SavedMapError {
         /// The version that can be read.
         known: u32,
     },
-    /// It ends too early, or goes on after its end.
+    /// It ends too early, or has bytes after its end.
     #[error("damaged: {found} bytes in place of {expected}")]
     Length {
         /// What the header says, or needs at least.
