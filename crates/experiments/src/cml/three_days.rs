@@ -27,7 +27,7 @@ struct Day {
     published: SimulatedDriveResult,
 }
 
-/// Three days from an empty map, odometry as it is; each day begins where the robot is charged. [Gross et al. 2005, Fig. 6]
+/// Three days from an empty map, raw odometry; each day begins where the robot is charged. [Gross et al. 2005, Fig. 6]
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.

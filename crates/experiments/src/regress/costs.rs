@@ -40,7 +40,7 @@ impl EstimatedTime {
             _ if n_unknown == n_runs => "how long they take is not known".to_owned(),
             0 => format!("about {minutes:.1} minutes on {n_threads} threads"),
             n => {
-                format!("about {minutes:.1} minutes on {n_threads} threads, {n} of them without a known time")
+                format!("about {minutes:.1} minutes on {n_threads} threads, and {n} of them nobody has timed")
             }
         };
         format!("{n_runs} runs, {time}")

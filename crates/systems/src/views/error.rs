@@ -80,7 +80,7 @@ pub enum ViewsError {
     },
     /// A logged drive has no move between two places of the grid.
     #[error(
-        "none of {n_rows} rows has a move between two places of a grid of {columns} × {rows}: dx, dy, column, row"
+        "none of {n_rows} rows tells a move between two places of a grid of {columns} × {rows}: dx, dy, column, row"
     )]
     NoMoves {
         /// Rows of the table.
