@@ -46,10 +46,8 @@ pub(crate) fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
     let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
-    let note = format!(
-        "{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, raw odometry.",
-        setup.n_seeds
-    );
+    let note =
+        format!("{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, raw odometry.", setup.n_seeds);
     Ok(ReportRun { metrics, figures, notes: vec![note], ..ReportRun::default() })
 }
 

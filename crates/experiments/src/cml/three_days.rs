@@ -59,7 +59,7 @@ pub(crate) fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<Report
         figures.push(MapPlot { title, ..plan(&last.building, &last.trip, &last.course) }.draw()?);
     }
     let note = format!(
-        "{} seeds; {} m × {} m of a store, {} m a day, {:.0} % of the shelf sections rearranged over night, {N_PEOPLE} people.",
+        "{} seeds; {} m × {} m of a store, {} m a day, {:.0} % of the shelf sections rearranged every night, {N_PEOPLE} people.",
         setup.n_seeds,
         SIZE_M[0],
         SIZE_M[1],

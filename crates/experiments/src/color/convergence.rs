@@ -142,7 +142,7 @@ impl ConvergenceCount {
             self.trials.iter().filter(|trial| trial.reported_tracking && !trial.succeeded()).count();
         let (low, high) = proportion_interval(n_succeeded as u64, n as u64);
         let mut notes = vec![format!(
-            "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
+            "{n} halls, one for each run, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
         )];
         let failed: Vec<String> =
             self.trials.iter().filter(|t| !t.succeeded()).map(|t| t.seed.to_string()).collect();

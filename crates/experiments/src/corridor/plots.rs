@@ -59,7 +59,7 @@ fn errors(variants: &[(DescriptorKind, Variants)]) -> LinePlot {
         PlotSeries::new(kind.title(), points.collect())
     };
     LinePlot {
-        title: "How far off the best place is".to_owned(),
+        title: "Error of the most probable place".to_owned(),
         x_label: "frame".to_owned(),
         y_label: "places".to_owned(),
         series: variants.iter().map(series).collect(),

@@ -25,7 +25,7 @@ pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
             Method::Oracle => {
                 mean = mean
                     .at_least(0.9985)
-                    .bound_from("0.999 is what says that the definition of the pixels is sound");
+                    .bound_from("0.999 shows that the definition of the pixels is right");
             }
             _ => {}
         }
@@ -61,7 +61,7 @@ pub(super) fn note(scores: &[VenueScore]) -> String {
         format!(" ({:.2} ± {:.2} nats a venue)", gain.mean, gain.half_width)
     });
     format!(
-        "The mean ball of a venue left out, foretold with the carpet's help (joint prior) and without it (independent prior): {verdict}{interval}."
+        "The mean ball of a venue left out, predicted with the carpet (joint prior) and without it (independent prior): {verdict}{interval}."
     )
 }
 

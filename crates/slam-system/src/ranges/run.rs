@@ -103,7 +103,7 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, event
             unplaced.places.iter().map(|place| format!("({:.1}, {:.1})", place.x, place.y)).collect();
         let why = match places.as_slice() {
             [] => "too few ranges".to_owned(),
-            [one] => format!("its ranges hardly hold it at {one}"),
+            [one] => format!("its ranges hardly constrain it to {one}"),
             several => format!("{} fit equally well", several.join(" and ")),
         };
         let text = format!(

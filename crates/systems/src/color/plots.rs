@@ -60,10 +60,8 @@ pub fn film<R: Borrow<Record>>(
     });
     let images: Vec<(f64, EncodedImage)> =
         images.enumerate().filter(|(number, _)| is_shown(*number)).map(|(_, image)| image).collect();
-    let mut film = FilmStrip {
-        title: "What the camera saw, and what it was classified as".to_owned(),
-        ..FilmStrip::default()
-    };
+    let mut film =
+        FilmStrip { title: "Camera images and their classification".to_owned(), ..FilmStrip::default() };
     let paints = paints(run.system.map());
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
     // Classifies with the light at the end of the log, so early frames may look wrong.

@@ -26,7 +26,7 @@ pub fn logged_plots(run: &LoggedViews, feature: DescriptorKind) -> Result<Vec<Sv
         run.errors.kept().iter().map(|(frame, error)| (*frame as f64, *error as f64)).collect();
     if !errors.is_empty() {
         let plot = LinePlot {
-            title: "How far off the best place is".to_owned(),
+            title: "Error of the most probable place".to_owned(),
             x_label: "frame".to_owned(),
             y_label: "places".to_owned(),
             series: vec![PlotSeries::new(feature.title(), errors)],
