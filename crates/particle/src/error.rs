@@ -10,7 +10,7 @@ pub enum ParticleError {
     /// So many particles do not fit into memory.
     #[error("no room for {requested} particles")]
     TooMany {
-        /// How many were asked for.
+        /// The requested number.
         requested: usize,
     },
     /// Two lists that belong together differ in length.

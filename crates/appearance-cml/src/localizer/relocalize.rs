@@ -81,7 +81,7 @@ fn log_ratio(test: Option<PlaceTest>, rate: f64) -> f64 {
 }
 
 impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
-    /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative wins.
+    /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative is accepted.
     ///
     /// Returns whether it did. `kidnap` is the test of the present hypothesis.
     pub(super) fn relocalize(

@@ -7,7 +7,7 @@ use super::LowerBoundedDistance;
 /// **Law**: for every `enough`, what is passed over is farther: where [`may_be_within`](Self::may_be_within) says `None`, the distance is above `enough`; and its
 /// number never exceeds the distance.
 pub trait LowerBoundTable<D: LowerBoundedDistance>: Clone + Debug + Default {
-    /// Puts a reference into a slot, in the stead of what was there; a new slot is the next one.
+    /// Puts a reference into a slot and replaces the previous one; a new slot is the next one.
     fn put(&mut self, slot: usize, reference: &D);
 
     /// A lower bound of the distance of a view to the reference in a slot, unless it is above `enough`.

@@ -68,7 +68,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// What the camera sees when it has turned by `n` columns the way they go: column `n` comes first.
+    /// The view after a turn of the camera by `n` columns in column order: column `n` comes first.
     ///
     /// ```
     /// use wayfix_appearance_cml::Panorama;

@@ -13,7 +13,7 @@ const UNDERFLOW: f64 = 1e-250;
 pub struct MostProbableState {
     /// Its number; the lowest of several that are equal.
     pub state: usize,
-    /// The probability that it is the true one, as far as the filter knows.
+    /// The probability that it is the true one, by the filter.
     pub confidence: f64,
 }
 

@@ -13,7 +13,7 @@ pub trait GlobalDescriptor: Sync {
     /// Writes the numbers of one view into `features`, which has [`n_components`](Self::n_components) elements.
     fn extract(&self, view: &View<'_>, features: &mut [f64]);
 
-    /// The numbers of all views of a scene: one by one, unless a feature knows what neighbouring views share.
+    /// The numbers of all views of a scene: one by one, unless a feature shares work between neighbouring views.
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.

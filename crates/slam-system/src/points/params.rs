@@ -59,13 +59,13 @@ pub struct PointSlamParams {
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
     pub unlabelled_confirmation: LandmarkConfirmationParams,
-    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    /// Whether to record what the run observes; a command-line option, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
     /// Whether to keep the text of the batch.
     #[serde(skip)]
     pub record_graph: bool,
-    /// Whether a smoother follows the filter; asked for on the command line too.
+    /// Whether a smoother follows the filter; a command-line option too.
     #[serde(skip)]
     pub smoothing: Smoothing,
 }
@@ -94,7 +94,7 @@ pub struct RobotTimingParams {
     pub sensor_latency: f64,
     /// Time from the stamp of a velocity command to the motion it makes, s.
     pub command_delay: f64,
-    /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
+    /// Time that a commanded turn loses: the turn is shorter than in the log by this time, s.
     pub turn_command_time_loss: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_timeout: f64,

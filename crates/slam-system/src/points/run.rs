@@ -213,7 +213,7 @@ fn odometry_stamp(record: &Record) -> Option<Stamp> {
     .then_some(record.stamp)
 }
 
-/// The rule that was asked for, else by identity where there are identities.
+/// The requested rule, else by identity if there are identities.
 fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<AssociationRule> {
     let association = match (asked, has_identities(records)) {
         (Some(rule), _) => rule,

@@ -50,7 +50,7 @@ where
         }
     }
 
-    /// Passes records through the system and says what is wrong with the result.
+    /// Passes records through the system and reports the faults of the result.
     pub(crate) fn through(
         mut self,
         records: impl IntoIterator<Item = impl Borrow<Record>>,

@@ -39,7 +39,7 @@ pub struct WallSlamFrontEnd {
     /// The way since.
     pub(super) relative_motion: RelativeMotion,
     pub(super) odometry: OdometryBetweenScans,
-    /// Where the laser is now, where the log says it and the parameters do not.
+    /// The present pose of the laser, if the log gives it and the parameters do not.
     pub(super) current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places the laser, and not the parameters.
     pub(super) laser_follows_log: bool,

@@ -19,7 +19,7 @@ pub struct OdometryBetweenScans {
     twist: Option<Vector3<f64>>,
 }
 
-/// A motion, and how far it may be wrong beside the noise of odometry.
+/// A motion, and its possible error in addition to the noise of odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
     pub(super) increment: Pose2<f64>,

@@ -31,7 +31,7 @@ pub struct WallSlamParams {
     /// Start pose, m and rad; when not given, that of the log where odometry starts, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub start_pose: Option<[f64; 3]>,
-    /// Where the laser sits on the robot: x forward, y left, heading; m and rad. When not given, where the log says, or the middle.
+    /// Pose of the laser on the robot: x forward, y left, heading; m and rad. Default: that of the log, else the robot's centre.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub laser_pose: Option<[f64; 3]>,
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
@@ -76,7 +76,7 @@ pub struct WallSlamParams {
     pub nearest_neighbour: NearestNeighbourParams,
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
-    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    /// Whether to record what the run observes; a command-line option, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
 }

@@ -126,7 +126,7 @@ fn drive_through<R: Borrow<Record>>(
     Ok(run)
 }
 
-/// Where the log says that the laser is first; the system follows a laser that moves.
+/// The first pose of the laser in the log; the system follows a laser that moves.
 fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
     records.iter().find_map(|record| match record.data {
         RecordData::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),

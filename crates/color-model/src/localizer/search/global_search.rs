@@ -118,7 +118,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.evidence.fit(scratch, candidate, effort, true);
                 if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
-                    return; // The filter knows it from all frames: some of them would lead it away.
+                    return; // The filter estimates it from all frames: a part of them would give a wrong pose.
                 }
                 candidate.steps = Steps::new(first_pose_step(round), self.evidence.frames.len());
                 for at in 0..(params.n_first_round_moves as usize) << round {
@@ -161,7 +161,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         })
     }
 
-    /// A place that a filter knows.
+    /// A place that a filter tracks.
     fn known(&self, location: &CameraLocation) -> Candidate {
         let Evidence { params, frames, .. } = &self.evidence;
         let trajectory = Trajectory::through(&location.body, frames.len(), frames)

@@ -3,7 +3,7 @@ use super::super::{FullReport, Metric, PassFailCount, ReportRun, ReportSuite};
 use super::{anchor, number_cell, table};
 use crate::plot::escape;
 
-/// Verdict, origin and contents. A run of one's own log has neither bounds nor a revision: what was found and doubted stands there instead.
+/// Verdict, origin and contents. A run of a user's log has neither bounds nor a revision: results and warnings stand there instead.
 pub(super) fn header(report: &FullReport) -> String {
     let seconds: f64 = report.runs().map(|(_, run)| run.seconds).sum();
     let revision =
