@@ -18,7 +18,7 @@ pub enum AppearanceMapError {
         /// Its number.
         id: u32,
     },
-    /// A picture without pixels, or with more or fewer than its size says.
+    /// A picture without pixels, or with a number of pixels that differs from its size.
     #[error("{n_bytes} bytes for a picture of {} × {} pixels", size.0, size.1)]
     PixelCount {
         /// Columns and rows.

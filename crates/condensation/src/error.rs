@@ -56,7 +56,7 @@ pub enum CondensationError {
     /// There is no such state.
     #[error("state {state} does not exist, there are {n_states}")]
     State {
-        /// What was asked for.
+        /// The requested state.
         state: usize,
         /// How many there are.
         n_states: usize,

@@ -1,4 +1,4 @@
-//! State condensation: a robot that finds out in which of finitely many places it is from what the whole view looks like.
+//! State condensation: localization in finitely many places by the appearance of the whole view.
 //!
 //! | part | what is in it |
 //! | --- | --- |

@@ -86,7 +86,7 @@ impl EncodedImage {
         Self { format, bytes: bytes.into() }
     }
 
-    /// Stores a file of the format that its first bytes tell; `None` if they tell none.
+    /// Stores a file in the format that its first bytes indicate; `None` if they indicate none.
     pub fn from_bytes(bytes: impl Into<Arc<[u8]>>) -> Option<Self> {
         let bytes = bytes.into();
         Some(Self { format: ImageFileFormat::of_bytes(&bytes)?, bytes })

@@ -11,7 +11,7 @@ pub type TangentMatrix<X> = OMatrix<<X as Manifold>::Scalar, <X as Manifold>::Di
 /// The derivative of a function from `X` to `Z` in tangent coordinates: `dim Z × dim X`.
 pub type Jacobian<Z, X> = OMatrix<<X as Manifold>::Scalar, <Z as Manifold>::Dim, <X as Manifold>::Dim>;
 
-/// A set of points that looks like a vector space around each of them.
+/// A set of points that is locally like a vector space around each of them.
 ///
 /// Writing $`x ⊞ δ`$ for [`retract`](Self::retract) and $`y ⊟ x`$ for `x.local(&y)`, the **laws** are
 ///

@@ -3,7 +3,7 @@ use crate::{
     error::{IntegrityError, check_distance, check_ratio},
 };
 
-/// The Shiryaev–Roberts test over distance: has the robot been moved somewhere on its way?
+/// The Shiryaev–Roberts test over distance: has the robot been kidnapped at some point of its path?
 ///
 /// ```math
 /// R ← (R + d)\, \frac{p_1(z)}{p_0(z)},\qquad \text{change when } R ≥ A

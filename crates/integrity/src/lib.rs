@@ -1,11 +1,11 @@
-//! Integrity monitoring: is the robot where it believes to be?
+//! Integrity monitoring: does the estimated pose agree with the measurements?
 //!
 //! | question | type |
 //! | --- | --- |
 //! | Have the measurements changed? | [`CusumTest`]: Page's cumulative sum |
 //! | Which of two hypotheses holds? | [`ProbabilityRatioTest`]: Wald's sequential test |
-//! | Has somebody moved the robot? | [`ShiryaevRobertsTest`]: Shiryaev–Roberts over distance |
-//! | Where is it then? | [`RelocalizationTest`]: the present hypothesis against the alternatives of a search |
+//! | Has the robot been kidnapped? | [`ShiryaevRobertsTest`]: Shiryaev–Roberts over distance |
+//! | Where is it now? | [`RelocalizationTest`]: the present hypothesis against the alternatives of a search |
 //!
 //! The crate knows no sensor. A localizer gives log-likelihoods and the distance that it drives.
 

@@ -18,7 +18,7 @@ use crate::error::{IntegrityError, check};
 pub struct RelocalizationParams {
     /// Largest mean number of false alarms per km of driving; 0 switches relocalization off. Default 0.01: a robot that drives 10 km a day has one in ten days.
     pub false_alarms_per_km: f64,
-    /// Prior mean number of times that somebody moves the robot, per km of driving; above `false_alarms_per_km`. Default 1.
+    /// Prior mean number of kidnappings of the robot, per km of driving; above `false_alarms_per_km`. Default 1.
     pub kidnappings_per_km: f64,
     /// Distance for which a replaced hypothesis remains an alternative, m. Default 20.
     pub alternative_kept_distance: f64,

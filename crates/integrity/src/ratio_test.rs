@@ -17,8 +17,8 @@ pub enum RatioVerdict {
 /// Λ ← Λ + \log \frac{p_2(z)}{p_1(z)},\qquad \text{second when } Λ ≥ -\ln α,\quad \text{first when } Λ ≤ \ln α
 /// ```
 ///
-/// The probability that the wrong one is ever chosen is at most $`α`$, for any number of measurements [Ville 1939]. The sum goes on after a verdict, which later
-/// measurements can revoke.
+/// The probability that the wrong one is ever chosen is at most $`α`$, for any number of measurements [Ville 1939]. The sum continues after a verdict; later
+/// measurements can revoke it.
 ///
 /// ```
 /// use wayfix_integrity::{ProbabilityRatioTest, RatioVerdict};

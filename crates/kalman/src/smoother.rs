@@ -37,7 +37,7 @@ where
     current: Gaussian<X>,
 }
 
-/// A step of the forward pass: the belief it started from and where it led.
+/// A step of the forward pass: the belief before it and the belief after it.
 #[derive(Clone, Debug)]
 struct Transition<X: Manifold>
 where

@@ -10,7 +10,7 @@ pub enum ParticleError {
     /// So many particles do not fit into memory.
     #[error("no room for {requested} particles")]
     TooMany {
-        /// How many were asked for.
+        /// The requested number.
         requested: usize,
     },
     /// Two lists that belong together differ in length.
@@ -51,7 +51,7 @@ pub enum ParticleError {
         /// How many there are.
         n_particles: usize,
     },
-    /// A motion led to a state that is not finite.
+    /// A motion gave a state that is not finite.
     #[error("state {index} is not finite")]
     State {
         /// Whose.

@@ -64,7 +64,7 @@ impl KldSampling {
         Ok(Self { params, z: Normal::standard().inverse_cdf(confidence) })
     }
 
-    /// How many particles `n_bins` occupied bins ask for, within the bounds:
+    /// Number of particles that `n_bins` occupied bins require, within the bounds:
     /// $`n = \frac{k-1}{2ε} \Big(1 - \frac{2}{9(k-1)} + \sqrt{\frac{2}{9(k-1)}} \, z_{1-δ}\Big)^3`$. [Fox 2003]
     pub fn required(&self, n_bins: usize) -> usize {
         let KldParams { epsilon, min_particles: min, max_particles: max, .. } = self.params;

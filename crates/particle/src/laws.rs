@@ -7,7 +7,7 @@ use wayfix_estimation_traits::laws::within;
 
 use crate::{NormalizedWeights, Resampler};
 
-/// Standard errors that an average may be off: one in 1.7 million honest averages is further out.
+/// Standard errors that an average may be off: one in 1.7 million averages of a correct model is further out.
 const STANDARD_ERRORS: f64 = 5.0;
 
 /// The laws of [`Resampler`], on `repeats` draws (some 10 000) of `n` ancestors.

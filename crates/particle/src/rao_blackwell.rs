@@ -73,8 +73,8 @@ impl<X, C> RaoBlackwellParticle<X, C> {
     }
 }
 
-/// Changes conditional parts by what does not depend on the sampled parts, a drift say: once for all particles that share one, and they go on
-/// sharing it.
+/// Changes conditional parts by what does not depend on the sampled parts, for example by a drift. Particles that share a part are changed once and still
+/// share it.
 ///
 /// ```
 /// use wayfix_particle::{ParticleSet, RaoBlackwellParticle, map_conditionals};

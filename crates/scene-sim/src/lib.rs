@@ -9,7 +9,7 @@
 //! | `league` | a field full of colours under changing light, with a camera |
 //! | `scenery` | flat scenes, seen through a window |
 //! | `film` | films of one target each under changing light, with its silhouette |
-//! | `indoors` | stores and rooms, seen by a camera that looks all around |
+//! | `indoors` | stores and rooms, seen by an omnidirectional camera |
 //!
 //! * **The truth follows no estimator's model.** Two wheels with motor lag, time-correlated slip and radii that differ from nominal,
 //!   integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only

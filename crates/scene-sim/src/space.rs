@@ -11,7 +11,7 @@ use wayfix_estimation_traits::{Pose2, Pose3};
 /// let left = space::yaw(std::f64::consts::FRAC_PI_2) * Vector3::x();
 /// assert!((left - Vector3::y()).norm() < 1e-15);
 /// let down = space::pitch(std::f64::consts::FRAC_PI_2) * Vector3::x();
-/// assert!((down + Vector3::z()).norm() < 1e-15, "positive pitch looks down");
+/// assert!((down + Vector3::z()).norm() < 1e-15, "positive pitch points down");
 /// ```
 pub fn yaw(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::z(), angle)

@@ -67,7 +67,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The content has no known format.
-    #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), LogFormat::NAMES)]
+    #[error("{}: not a known log format ({reason}); name the format: {}", path.display(), LogFormat::NAMES)]
     UnknownFormat {
         /// The file.
         path: PathBuf,

@@ -25,7 +25,7 @@ pub struct ReadReport {
     pub warnings: Vec<LogWarning>,
 }
 
-/// A warning for the user: an assumption, or a doubt about the data.
+/// A warning for the user: an assumption, or doubtful data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogWarning {
     /// Its kind, as it is counted among the events: `laser_mount_unknown`.

@@ -10,7 +10,7 @@ use crate::{LogError, LogFormat, McapWriter, Record};
 /// Report of writing a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct WriteReport {
-    /// Records that went into the file.
+    /// Records that are in the file.
     pub records_written: u64,
     /// Count of the skipped records by kind, which the format cannot store.
     pub left_out: BTreeMap<&'static str, u64>,

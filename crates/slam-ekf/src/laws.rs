@@ -120,7 +120,7 @@ where
     let seen_again = &jacobian * &new.covariance * jacobian.transpose();
     let is_honest = Cholesky::new(seen_again - model.noise(seen) * (1.0 - 1e-6)).is_some(); // equal up to rounding
     within(
-        "a new landmark is no surer than the measurement (law 4)",
+        "a new landmark is no more certain than the measurement (law 4)",
         if is_honest { 0.0 } else { f64::INFINITY },
         0.0,
     )

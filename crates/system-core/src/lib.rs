@@ -3,7 +3,7 @@
 //! | question | item |
 //! | --- | --- |
 //! | How do records pass through a system? | [`drive`] |
-//! | Who writes its estimates for viewers? | [`EstimateRecorder`], [`EstimateDrawer`] |
+//! | What writes the estimates for viewers? | [`EstimateRecorder`], [`EstimateDrawer`] |
 //! | Where does a run start, and what does the truth cover? | [`TrueStartPose`], [`warn_of_start`], [`warn_of_no_overlap`] |
 //! | Which parameters are overridden? | [`settings`] |
 //! | Do odometry and measurements overlap in time? | [`check_overlap`] |

@@ -14,7 +14,7 @@ pub fn warn_of_start(events: &mut EventCounts, known: Option<TrueStartPose>, tru
         ),
         None if !truth.is_empty() => events.warn(
             "start_pose_unknown",
-            "no true pose tells where the run starts: it starts at (0, 0, 0), and figures are aligned ones only (`start_pose` sets it)",
+            "no true pose at the start: the run starts at (0, 0, 0), and figures are aligned ones only (`start_pose` sets it)",
         ),
         _ => {}
     }

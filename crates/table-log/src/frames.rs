@@ -151,7 +151,7 @@ fn place(
         rows.iter().enumerate().map(|(index, row)| Some(at(index, row.as_ref()?))).collect()
     } else if have_times {
         return Err(unmatched(
-            "the poses are by time, and nothing tells when the frames were taken (--stamps FILE: rows of time, file)",
+            "the poses are by time, and the frames have no stamps (--stamps FILE: rows of time, file)",
         ));
     } else {
         return Err(unmatched("a row for each frame is needed, or a column of file names"));

@@ -88,7 +88,7 @@ fn rows(table: &Table, read: &mut ReadReport) -> Option<Vec<Option<MoveRow>>> {
 /// Largest number of columns or rows.
 const MAX_SIDE: usize = 100_000;
 
-/// A frame with the move that led to it.
+/// A frame with the move before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedFrame {
     /// Name of its file.
@@ -111,7 +111,7 @@ impl MovedFrame {
 pub struct MovedFrameFolder {
     /// All frames.
     pub frames: Vec<MovedFrame>,
-    /// Whether a table tells the moves, and not the order of the frames.
+    /// Whether a table gives the moves, and not the order of the frames.
     pub has_table: bool,
     /// Skipped rows and images.
     pub read: ReadReport,

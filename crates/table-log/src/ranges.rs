@@ -43,7 +43,7 @@ const TRUTH: &str = "truth.csv";
 const BEACONS: &str = "beacons.csv";
 
 impl RangeRecording {
-    /// Whether a folder looks like one: it has a table of ranges.
+    /// Whether a folder is one: it has a table of ranges.
     pub fn is_in(folder: &Path) -> bool {
         folder.join(RANGES).is_file()
     }

@@ -65,7 +65,7 @@ fn parse(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<St
         }
     }
     match stamps.is_empty() {
-        true => Err(format!("no row tells a time; {}", table.first_problem(report))),
+        true => Err(format!("no row has a time; {}", table.first_problem(report))),
         false => Ok(stamps),
     }
 }

@@ -10,7 +10,7 @@ use crate::{
 /// Something that a map has, or that has become of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Entry {
-    /// A reference, new or in the stead of one of that number.
+    /// A reference, new or in place of the one with that number.
     Reference(ReferenceId, PanoramaDescriptor, ReferenceView),
     /// New places of one that is there.
     Places(ReferenceId, ReferenceView),

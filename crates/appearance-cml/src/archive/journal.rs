@@ -29,7 +29,7 @@ pub struct MapArchiveAppender {
 }
 
 impl MapArchiveAppender {
-    /// A journal that goes on from the bytes of this map.
+    /// A journal that continues after the bytes of this map.
     pub fn after<S: ReferenceSearch<PanoramaDescriptor>>(map: &AppearanceMap<PanoramaDescriptor, S>) -> Self {
         Self { written: map.references().clone() }
     }

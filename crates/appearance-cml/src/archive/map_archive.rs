@@ -49,7 +49,7 @@ pub enum MapArchiveCompleteness {
     Whole,
     /// In the middle of one, which is left out: writing it was interrupted.
     Interrupted {
-        /// Where the whole ones end: a journal goes on from here.
+        /// Where the whole ones end: a journal continues from here.
         whole_bytes: usize,
     },
 }
@@ -224,7 +224,7 @@ fn next_entry(bytes: &[u8]) -> Next<'_> {
     match reader.take(n as usize) {
         Some(content) if checksum(content) == sum => Next::Entry(content, reader.0),
         Some(_) => Next::Damaged,
-        // A length that was flipped looks like this, too: then whole entries follow that it swallows.
+        // A flipped bit in the length has the same effect; then whole entries follow within that length.
         None if has_entry_after(bytes) => Next::Damaged,
         None => Next::CutShort,
     }

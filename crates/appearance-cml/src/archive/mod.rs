@@ -6,7 +6,7 @@
 //! ```
 //! All numbers are little endian. Entries say what there is or has become: a reference, its places, its end, the scale of views, the state. A map is
 //! a header and entries; later ones may be appended as a journal, so that a robot does not write the whole map again for every view that it
-//! learns. An entry that was being appended when the power went is cut short: what is before it is whole.
+//! learns. A power failure cuts the entry that is being appended; all entries before it are whole.
 
 mod bytes;
 mod entry;

@@ -198,7 +198,7 @@ mod tests {
         let volume = (2.0 * std::f64::consts::PI).powf(1.5) * (0.3 * 0.3 * 0.1);
         assert_abs_diff_eq!(places[0].weight, 0.5 * volume / 1000.0, epsilon = 1e-12);
         assert_eq!(left.weight, FLOOR);
-        // A peak wider than the map tells no place.
+        // A peak wider than the map gives no place.
         let wide = GaussianMixtureLikelihood { peaks: vec![at(0.0, 100.0, 0.5)], floor: FLOOR };
         let (places, left) = fuse(&[], uniform, &wide, &MixtureFusionParams::default()).unwrap();
         let headings = 0.1 / std::f64::consts::TAU.sqrt();

@@ -243,7 +243,7 @@ where
         self.belief.unimodal(min_weight).filter(|_| self.kidnap.probability() <= 1.0 - min_weight)
     }
 
-    /// Replaces the belief and its test; `is_moved` says that an alternative has won.
+    /// Replaces the belief and its test; `is_moved` is true if an alternative is accepted.
     pub(super) fn replace_belief(
         &mut self,
         belief: Belief,

@@ -29,7 +29,7 @@ impl ViewMatch {
 }
 
 impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
-    /// The likelihood of a view. A robot that has only turned since the last one sees nothing new of its position, but compares other sectors
+    /// The likelihood of a view. After a turn without translation, the view has no new information about the position, but compares other sectors
     /// for its heading: the position of the peaks becomes uncertain, and the rest independent, as the distance is short against half a step.
     pub(super) fn match_view(&self, view: &D) -> Result<ViewMatch, AppearanceMapError> {
         let mut matched = self.map.match_view(view, &self.belief, &self.params)?;

@@ -34,7 +34,7 @@ impl PoseHypothesisSource for MeasuredPoses {
     }
 }
 
-/// What a measurement alone says: the information of the posterior without that of the prior, $`Λ = C_+^{-1} - C_-^{-1}`$ and
+/// The information of a measurement alone: that of the posterior without that of the prior, $`Λ = C_+^{-1} - C_-^{-1}`$ and
 /// $`Λ μ = C_+^{-1} μ_+`$ in the chart at $`μ_-`$. A part that is not measured has the prior's marginal, which covariance intersection does not
 /// count twice.
 fn measured(

@@ -69,7 +69,7 @@ impl<D> PoseHistory<D> {
         let last = self.waiting.iter().rposition(is_known)?;
         let known = self.waiting.get(first)?.estimate.clone()?;
         let smoothed = self.smoothed(known.clone(), first..last + 1).unwrap_or(known);
-        // Before the first estimate only odometry tells.
+        // Before the first estimate only odometry is known.
         Some(self.waiting.range(1..=first).rev().fold(smoothed, |pose, later| later.motion.undone(&pose)))
     }
 

@@ -12,7 +12,7 @@ use crate::{AppearanceMap, AppearanceMapError, ReferenceSearch, ViewDescriptor, 
 /// A view *recognizes* a hypothesis if a reference there is nearer to it than all of [`N_FAR`] references of far places. At a wrong hypothesis
 /// $`k`$ references do so with probability $`k/(k+n)`$, by exchangeability. At the right one the rate is the mean of a Beta posterior over the views so
 /// far, from the uniform prior; a view counts with the probability that the robot is at no alternative. The log-likelihood ratio is that of
-/// these two Bernoulli distributions, 0 where the map knows nothing.
+/// these two Bernoulli distributions, 0 where the map has no places.
 ///
 /// A view that does not recognize the present hypothesis starts a search of the whole map, unless the last one was within the match radius.
 ///
@@ -81,7 +81,7 @@ fn log_ratio(test: Option<PlaceTest>, rate: f64) -> f64 {
 }
 
 impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D, S, M> {
-    /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative wins.
+    /// Tests the present hypothesis with the view, and replaces `belief`, the present one after the view, if an alternative is accepted.
     ///
     /// Returns whether it did. `kidnap` is the test of the present hypothesis.
     pub(super) fn relocalize(
@@ -136,7 +136,7 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
     }
 }
 
-/// A hypothesis after the view, which it looks for nearby.
+/// A hypothesis after the view, which is searched for near it.
 fn seen<D: ViewDescriptor, S: ReferenceSearch<D>>(
     map: &AppearanceMap<D, S>,
     view: &D,

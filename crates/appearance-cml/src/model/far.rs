@@ -43,7 +43,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         sample.iter().filter(move |(id, _)| are_far(*id)).map(|(_, difference)| *difference)
     }
 
-    /// Tests the view at a hypothesis; `None` if the map knows nothing there or far away, or the pose is not certain enough to tell.
+    /// Tests the view at a hypothesis; `None` if the map has no places there or far away, or if the pose is too uncertain.
     ///
     /// The references of the hypothesis lie within half of the match radius.
     pub(crate) fn test_place(

@@ -12,7 +12,7 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// are dense. (On the Sussex route 0.3 to 0.5 of that distance are equally good, 1 is worse.) The covariance has two parts: what the places themselves are uncertain by, and what the comparison is, which is
 /// independent of all beliefs ([`PoseHypothesis::independent`]).
 ///
-/// At the border of the map all places lie on one side, and their mean is biased towards it. There the leader only tells the distance of the
+/// At the border of the map all places lie on one side, and their mean is biased towards it. There the leader only gives the distance of the
 /// robot ([`ViewDifferenceModel::to_meters`]): the hypothesis moves by that distance at most towards a component of `belief` beyond the border.
 ///
 /// # Errors

@@ -118,7 +118,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Ok(changed)
     }
 
-    /// The pose minus the pose that the matching places tell; `None` if they mean another place.
+    /// The pose minus the pose that the matching places give; `None` if they indicate another place.
     fn residual(
         &self,
         seen: &[ReferenceMatch],

@@ -28,7 +28,7 @@ pub enum PlaceUpdateRule {
     /// Adds the pose of the robot to every matching reference of the map; a view that matches none becomes a reference.
     /// [Gross et al. 2005, Sec. 2.3]
     Pose,
-    /// Adds the difference between the pose of the robot and the pose that the references tell: their errors are corrected, and their
+    /// Adds the difference between the pose of the robot and the pose that the references give: their errors are corrected, and their
     /// distances from one another stay. It changes references of this place only, and a view that matches elsewhere becomes a reference.
     #[default]
     Residual,

@@ -7,7 +7,7 @@ use super::merge::merged;
 use super::{AppearanceMapParams, PlaceComponent};
 use crate::{AppearanceMapError, ReferenceMatch};
 
-/// The pose of the robot minus the pose that the references tell, in the frame of the map.
+/// The pose of the robot minus the pose that the references give, in the frame of the map.
 pub(super) struct Residual {
     pub(super) translation: Vector2<f64>,
     pub(super) turn: f64,

@@ -51,7 +51,7 @@ pub(super) fn weight_when_missed(
         }
     };
     let loss = params.forgetting_rate * nearness * certainty;
-    // A radius of 0 forgets nothing.
+    // A radius of 0 changes no weight.
     if loss.is_finite() { (1.0 - loss.clamp(0.0, 1.0)) * place.weight } else { place.weight }
 }
 

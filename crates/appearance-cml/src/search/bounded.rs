@@ -7,7 +7,7 @@ use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 ///
 /// ```
 /// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, ViewDescriptor, NoLowerBoundTable};
-/// /// A colour that looks the same from everywhere.
+/// /// A colour that is the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
 /// impl ViewDescriptor for Grey {

@@ -7,7 +7,7 @@ pub struct ViewDifference {
     pub rotation: f64,
 }
 
-/// What a view looks like, in numbers that can be compared.
+/// The appearance of a view, in numbers that can be compared.
 ///
 /// **Laws**: `a.compare(&a).distance` is 0; the distance is symmetric and does not change when either view is taken with another heading;
 /// `a.compare(&b).rotation` is the opposite of `b.compare(&a).rotation`.

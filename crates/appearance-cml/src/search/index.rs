@@ -33,7 +33,7 @@ pub struct AppearanceIndex<D: LowerBoundedDistance> {
     table: D::Table,
 }
 
-/// How many references each stage of a search looked at.
+/// Number of references that each stage of a search compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchStatistics {
     /// Bounded by their descriptors: what the table let through.

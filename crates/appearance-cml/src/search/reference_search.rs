@@ -10,7 +10,7 @@ pub struct ReferenceId(pub u32);
 pub struct ReferenceMatch {
     /// Which one.
     pub id: ReferenceId,
-    /// How it compares with the view that was asked for.
+    /// Its comparison with the query view.
     pub comparison: ViewDifference,
 }
 

@@ -3,7 +3,7 @@ use std::{f64::consts::PI, sync::OnceLock};
 /// Orthonormal cosines over the rings, the slowest first (DCT-II).
 ///
 /// An orthonormal change of basis over the rings changes no product of two views. What it changes is where a view's energy is: slow
-/// changes from top to bottom hold most of it, so that the first cosines of two views tell most of how they differ.
+/// changes from top to bottom hold most of it, so that the first cosines of two views contain most of their difference.
 pub(super) struct Cosines {
     rows: Vec<Vec<f64>>,
 }

@@ -71,7 +71,7 @@ impl PanoramaDescriptorExtractor {
         self.size
     }
 
-    /// What a panorama looks like.
+    /// The appearance of a panorama.
     ///
     /// # Errors
     /// [`AppearanceMapError::ViewSize`] when it is of another size than the others, [`AppearanceMapError::BlankView`] when it has no contrast,

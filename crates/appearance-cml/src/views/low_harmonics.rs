@@ -3,7 +3,7 @@ use wide::i16x16;
 use super::descriptor::PanoramaDescriptor;
 use super::lanes::{HARMONICS, Pairs, Sums, sixteen};
 
-/// Cosines over the rings that are looked at first: of the constant harmonic, and of the first eight.
+/// Cosines over the rings that are compared first: of the constant harmonic, and of the first eight.
 const N_CONSTANT: usize = 16;
 const N_SLOW: usize = 8;
 /// Their numbers: of the constant harmonic, then cosine by cosine real and imaginary parts side by side.

@@ -1,4 +1,4 @@
-//! What a view looks like, whichever way the robot faces: panoramas become averages per ring and sector, these a Fourier spectrum over the
+//! The appearance of a view, independent of the robot's heading: panoramas become averages per ring and sector, these a Fourier spectrum over the
 //! azimuth. [Gross et al. 2005, Sec. 2.2]
 //!
 //! A turn of the robot shifts a panorama and multiplies harmonic $`k`$ of every ring by the same $`e^{-\mathrm i k φ}`$: magnitudes, and phases

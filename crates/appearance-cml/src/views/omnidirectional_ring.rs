@@ -8,15 +8,15 @@ use crate::AppearanceMapError;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum RingVerticalOrientation {
-    /// The outermost: a camera that looks up into a mirror.
+    /// The outermost: a camera below a mirror.
     OutermostUp,
-    /// The innermost: a camera, or a fisheye lens, that looks up.
+    /// The innermost: a camera or fisheye lens that points up.
     InnermostUp,
 }
 
 /// Where the ring of a raw omnidirectional image lies, and how it is unwrapped.
 ///
-/// The first column of the panorama looks along the image's x axis, to the right of the centre; the others follow as `azimuth_direction` says, as
+/// The first column of the panorama points along the image's x axis, to the right of the centre; the others follow as `azimuth_direction` says, as
 /// they are seen in the image (a mirror may reverse that in the world).
 ///
 /// ```
@@ -129,7 +129,7 @@ impl OmnidirectionalRing {
         pixel(self.center[1], radius * sin, height) * width + pixel(self.center[0], radius * cos, width)
     }
 
-    /// Rows go down: what looks clockwise in the image is a growing angle there.
+    /// Rows go down, so angles grow clockwise in the image.
     fn sign(&self) -> f64 {
         if self.azimuth_direction == AzimuthDirection::Clockwise { 1.0 } else { -1.0 }
     }

@@ -5,7 +5,7 @@ use crate::AppearanceMapError;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum AzimuthDirection {
-    /// To the right, as a camera that pans or a person who looks round sees them.
+    /// To the right, as a camera that pans clockwise records them.
     Clockwise,
     /// To the left, as angles are counted (REP 103).
     Counterclockwise,
@@ -68,7 +68,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// What the camera sees when it has turned by `n` columns the way they go: column `n` comes first.
+    /// The view after a turn of the camera by `n` columns in column order: column `n` comes first.
     ///
     /// ```
     /// use wayfix_appearance_cml::Panorama;

@@ -16,8 +16,8 @@ pub struct PanoramaDescriptorParams {
     pub n_sectors: usize,
     /// Harmonics of the azimuth, the constant one included. Default 16: details down to 24°; at least 2, at most half the sectors, at most 64.
     pub n_harmonics: usize,
-    /// Standard deviation, in sectors and in rings, of the Gaussian that views are smoothed with; 0 leaves them as they are. What is finer says more of where
-    /// exactly the robot is than of which place that is: a robot a third of a metre beside the taught lane sees it from too far another side. Default 1.
+    /// Standard deviation, in sectors and in rings, of the Gaussian that views are smoothed with; 0 leaves them as they are. Finer detail shows the
+    /// exact position more than the place: it differs too much a third of a metre beside the taught lane. Default 1.
     pub smoothing_sigma: f64,
     /// How grey values are weighed. Default: logarithmic.
     pub intensity_scale: IntensityScale,

@@ -3,7 +3,7 @@ use wayfix_color_map::{ColorId, PixelSpan};
 use super::NO_COLOR;
 use crate::ColorModelError;
 
-/// Pixels of one colour that hang together.
+/// Connected pixels of one colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorBlob {
     /// Their colour.

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::PixelSums;
 
-/// The tiles of an image, sorted by their mean colour: what the map does not show has colours too, which nobody knows.
+/// The tiles of an image, sorted by their mean colour: objects outside the map have unknown colours.
 ///
 /// Tiles that show nothing of the map have colours of an unknown distribution over cells $`k`$, $`p ∼ \operatorname{Dir}(q)`$. Its mean $`q`$ is that of all tiles of the
 /// image, with the weight of one tile [Perks 1947]. One tile after the other is as probable as its cell among those before:

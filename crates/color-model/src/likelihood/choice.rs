@@ -71,7 +71,7 @@ impl LikelihoodModel for ImageLikelihoodChoice {
             (Self::Features(params), Features(frame), Features(scratch)) => {
                 params.log_likelihoods(frame, scratch, view, light, log_likelihoods, shown);
             }
-            // A frame of another likelihood says nothing.
+            // A frame of another likelihood has no effect.
             _ => log_likelihoods.fill(0.0),
         }
     }

@@ -12,11 +12,11 @@ use wayfix_estimation_traits::{Manifold, Pose2, Pose3};
 /// use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 /// let tilted = CameraPoseError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.0 };
 /// let camera = tilted.camera_pose(&Pose2::identity(), &Pose3::identity());
-/// assert!((camera.rotation * Vector3::x()).z < 0.0); // a positive tilt looks down
+/// assert!((camera.rotation * Vector3::x()).z < 0.0); // a positive tilt points down
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraPoseError {
-    /// Rotation about the camera's x, y and z axes: roll, tilt (positive looks down) and pan (positive looks left), rad.
+    /// Rotation about the camera's x, y and z axes: roll, tilt (positive is down) and pan (positive is left), rad.
     pub rotation: Vector3<f64>,
     /// Height above the reported one, m.
     pub height: f64,
@@ -119,7 +119,7 @@ mod tests {
         let error = CameraPoseError { rotation: Vector3::new(0.0, 0.1, 0.0), height: 0.01 };
         let camera = error.camera_pose(&body, &mount);
         assert!((camera.translation - Vector3::new(1.0, 2.1, 0.21)).norm() < 1e-12);
-        // A positive tilt looks down: the optical axis of a robot that faces +y.
+        // A positive tilt points down: the optical axis of a robot that faces +y.
         let axis = camera.rotation * Vector3::x();
         assert!((axis - Vector3::new(0.0, 0.1_f64.cos(), -0.1_f64.sin())).norm() < 1e-12);
     }

@@ -292,7 +292,7 @@ where
         let per_tile = 1.0 / weighing.n_tiles as f64;
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
         let params = &self.params.search;
-        // At even odds, the frames tell the map at the estimate, one of all places, from the background.
+        // At even odds, the frames support the map at the estimate, one of all places, as much as the background.
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
         let mean =
             self.log_ratios.iter().map(|(log, _)| log).sum::<f64>() / self.log_ratios.len().max(1) as f64;

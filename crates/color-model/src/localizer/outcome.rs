@@ -33,6 +33,6 @@ pub enum LocalizationStatus {
     Tracking,
     /// Several places, one that is wider, or one of which no search was certain.
     Ambiguous,
-    /// The last frames together do not tell the map at the estimate from the background with 95 % probability. Do not use the pose.
+    /// The last frames together do not support the map at the estimate over the background with 95 % probability. Do not use the pose.
     Lost,
 }

@@ -13,7 +13,7 @@ const UNDERFLOW: f64 = 1e-250;
 pub struct MostProbableState {
     /// Its number; the lowest of several that are equal.
     pub state: usize,
-    /// The probability that it is the true one, as far as the filter knows.
+    /// The probability that it is the true one, by the filter.
     pub confidence: f64,
 }
 
@@ -85,7 +85,7 @@ impl DiscreteFilter {
         Ok(())
     }
 
-    /// Moves a share of the belief to everywhere: what the robot being carried off, or a wrong model, would do.
+    /// Replaces a share of the belief by the uniform distribution, for a kidnapping or a wrong model.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when `share` is no probability.

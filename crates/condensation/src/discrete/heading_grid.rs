@@ -17,7 +17,7 @@ pub enum Maneuver {
 
 /// Places in rows and columns with eight headings each, three degrees of freedom.
 ///
-/// Heading 0 looks along x (growing columns), each further one 45° counter-clockwise, y along growing rows.
+/// Heading 0 points along x (growing columns), each further one 45° counter-clockwise, y along growing rows.
 /// The border stops a robot, also in the direction along the border.
 ///
 /// ```

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 /// How well a measurement fits, in nats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasurementEvidence {
-    /// $`\log \sum_s p(m \mid s)\, \hat b(s)`$: where the robot is believed to be.
+    /// $`\log \sum_s p(m \mid s)\, \hat b(s)`$: at the predicted belief.
     pub log_predicted: LogWeight,
     /// $`\log \frac{1}{n} \sum_s p(m \mid s)`$: anywhere.
     pub log_uniform: LogWeight,
@@ -11,7 +11,7 @@ pub struct MeasurementEvidence {
 
 /// What a measurement did to the belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use = "an impossible measurement leaves the belief as it was; somebody has to decide what to do"]
+#[must_use = "an impossible measurement leaves the belief unchanged; the caller must decide what to do"]
 pub enum MeasurementOutcome {
     /// The belief is the posterior now.
     Updated(MeasurementEvidence),

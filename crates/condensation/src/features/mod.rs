@@ -1,4 +1,4 @@
-//! What a whole view looks like, in a handful of numbers.
+//! The appearance of a whole view, in a few numbers.
 
 mod columns;
 mod dominance;

@@ -3,7 +3,7 @@ use image::RgbImage;
 use crate::discrete::PositionGrid;
 use crate::{CondensationError, DiscreteStateSpace, View, ViewGrid};
 
-/// A global feature of a view: a few numbers that tell views apart. Implement the first two methods to use your own.
+/// A global feature of a view: a few numbers that distinguish views. Implement the first two methods to use your own.
 ///
 /// **Laws**: `extract` writes every component, finite ones; [`extract_all`](Self::extract_all) gives the same numbers to within rounding.
 pub trait GlobalDescriptor: Sync {
@@ -13,7 +13,7 @@ pub trait GlobalDescriptor: Sync {
     /// Writes the numbers of one view into `features`, which has [`n_components`](Self::n_components) elements.
     fn extract(&self, view: &View<'_>, features: &mut [f64]);
 
-    /// The numbers of all views of a scene: one by one, unless a feature knows what neighbouring views share.
+    /// The numbers of all views of a scene: one by one, unless a feature shares work between neighbouring views.
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.

@@ -3,7 +3,7 @@ use image::{GrayImage, RgbImage};
 use crate::CondensationError;
 use crate::features::picture::{grey, rgb_pixels, size};
 
-/// A rectangle of a picture: what the camera sees in one state.
+/// A rectangle of a picture: the view of the camera in one state.
 ///
 /// ```
 /// use wayfix_condensation::{RgbImage, View};
@@ -51,7 +51,7 @@ impl<'a> View<'a> {
         Ok(Self::inside(picture, (0, 0), (width, height)))
     }
 
-    /// The caller knows that the rectangle lies inside and has pixels.
+    /// The caller guarantees that the rectangle lies inside and has pixels.
     pub(crate) fn inside(picture: &'a RgbImage, corner: (usize, usize), size: (usize, usize)) -> Self {
         Self { picture, corner, size }
     }

@@ -9,7 +9,7 @@ use crate::{
     N_DISTURBANCES, StateDescriptorTable, ViewSource,
 };
 
-/// How every state looks and how that varies: the density $`p(m \mid s)`$ of the measurement. [Kasprzak & Szynkiewicz, Sec. 3.1]
+/// The appearance of every state and its variation: the density $`p(m \mid s)`$ of the measurement. [Kasprzak & Szynkiewicz, Sec. 3.1]
 ///
 /// ```math
 /// m = M_s + A_s θ + v, \qquad θ ∼ N(0, Θ),\; v ∼ N(0, R_s)

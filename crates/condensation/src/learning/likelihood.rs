@@ -10,7 +10,7 @@ const N: usize = N_DISTURBANCES;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LikelihoodTail {
-    /// $`e^{-d^2 / 2}`$, as in the paper: a single feature that jumps decides against the true place for good.
+    /// $`e^{-d^2 / 2}`$, as in the paper: a single jump of a feature excludes the true place permanently.
     Gaussian,
     /// $`(1 + d^2 / ν)^{-(ν + k) / 2}`$ for $`k`$ components: outliers count, but not for ever.
     StudentT {
@@ -67,7 +67,7 @@ impl AppearanceModel {
         }
     }
 
-    /// $`\log p(m \mid s)`$ with the disturbance integrated out, which is updated with what the measurement says of it.
+    /// $`\log p(m \mid s)`$ with the disturbance integrated out, which is updated with the measurement.
     ///
     /// Sizes are the caller's business; `scratch` is as long as the measurement.
     pub(crate) fn absorb(

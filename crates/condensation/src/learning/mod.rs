@@ -1,4 +1,4 @@
-//! What is learned before the robot drives: how every state looks and how that varies, where moves lead.
+//! What is learned before the robot drives: the appearance of every state, its variation, and the end states of moves.
 
 mod appearance;
 mod disturbance;

@@ -22,7 +22,7 @@ pub trait ViewSource {
         light: &LightChange,
     ) -> Result<StateDescriptorTable, CondensationError>;
 
-    /// By how much the view of `state` really moves when asked to by `shift`: less where the scene ends.
+    /// The actual shift of the view of `state` for a requested `shift`: smaller at the border of the scene.
     fn displacement(&self, state: usize, shift: (i32, i32)) -> (f64, f64);
 
     /// Half the distance between neighbouring states in pixels, if they are shifted against each other: a view shifted by more belongs to

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use crate::error::{check_state, checked};
 use crate::{CondensationError, DiscreteStateSpace, SparseTransition};
 
-/// Where moves led: counts from which transition probabilities are learned. [Kasprzak & Szynkiewicz, Sec. 2.2]
+/// Counts of the end states of moves, from which transition probabilities are learned. [Kasprzak & Szynkiewicz, Sec. 2.2]
 ///
 /// ```
 /// use wayfix_condensation::{PositionGrid, GridMove, TransitionCounts, TransitionModel};
@@ -46,7 +46,7 @@ where
         Ok(())
     }
 
-    /// $`p(s' \mid s, a)`$: the shares counted, beside `strength` moves that went where they should.
+    /// $`p(s' \mid s, a)`$: the counted shares, beside `strength` moves that end in the intended state.
     ///
     /// A Dirichlet prior, so that a state never left still has a row.
     ///

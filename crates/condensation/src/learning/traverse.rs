@@ -28,8 +28,8 @@ impl Default for RouteAppearanceParams {
 /// Places along a route, learned in the order of one traverse: how likely each of them is where a view was taken on another.
 ///
 /// Nothing is known of the second traverse, so its noise is learned from the first: the covariance of the features is that of views
-/// `tolerance` places apart. And errors of neighbouring views hang together: a robot that drives a little more to the left sees
-/// the same things differently for as long as they are in view. That is measured by the correlation length of the features along the route,
+/// `tolerance` places apart. Errors of neighbouring views are correlated: a robot that drives a little more to the left sees
+/// the same objects differently while they are in view. The measure is the correlation length of the features along the route,
 ///
 /// ```math
 /// τ = 1 + 2 \sum_{k \ge 1} ρ_k
@@ -195,7 +195,7 @@ mod tests {
         assert!(matches!(traverse.log_likelihoods(&[1.0, 2.0]), Err(CondensationError::Dimension { .. })));
     }
 
-    /// Places that all look the same tell nothing, and break nothing.
+    /// Places with the same appearance give no information and cause no error.
     #[test]
     fn a_route_without_features_leaves_all_places_equally_likely() {
         let grey = StateDescriptorTable::from_rows(&vec![vec![7.0, 0.0]; 9]).unwrap();

@@ -11,10 +11,10 @@ pub enum ActionSelection {
     /// As if the best state were the true one: nearer to the goal. [Kasprzak & Szynkiewicz, Sec. 2.2 (c)]
     #[default]
     Greedy,
-    /// Of the actions that bring the best state nearest to the goal, the one after which the next look is expected to leave the least
+    /// Of the actions that bring the best state nearest to the goal, the one after which the next view is expected to leave the least
     /// entropy over the best `hypotheses` places. At the goal, where none brings it nearer, all are compared.
     Informed {
-        /// How many of the best places are told apart.
+        /// Number of the best places that are distinguished.
         hypotheses: usize,
     },
 }
@@ -52,7 +52,7 @@ impl ActionSelection {
     }
 }
 
-/// The action of the least expected entropy after the next look, the first of equal ones.
+/// The action of the least expected entropy after the next view, the first of equal ones.
 fn most_informative<S: DiscreteStateSpace>(
     space: &S,
     open: &[usize],

@@ -17,14 +17,14 @@ use crate::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ViewLocalizerParams {
-    /// Share of the belief that goes everywhere in a step: the robot carried off, a place where the model is wrong.
+    /// Share of the belief that becomes uniform in a step: kidnapping, or a place where the model is wrong.
     pub kidnapping_probability: f64,
     /// How much the disturbance may drift in a step, as a share of its prior variance.
     pub shift_and_light_drift: f64,
 }
 
 impl ViewLocalizerParams {
-    /// The published filter: nobody moves the robot, and nothing drifts.
+    /// The published filter: no kidnapping and no drift.
     pub fn as_published() -> Self {
         Self { kidnapping_probability: 0.0, shift_and_light_drift: 0.0 }
     }
@@ -40,8 +40,8 @@ impl Default for ViewLocalizerParams {
 /// Place, light and shift estimated together from global features.
 ///
 /// A discrete Bayes filter over the product of places and conditions, in which every state carries its own Gaussian belief over the
-/// [`UnknownShiftAndLight`]: how the views seen on the way to this state fit what was learned of them tells the light. At first every place
-/// explains what is seen by a light of its own; the views that follow agree with one of them only.
+/// [`UnknownShiftAndLight`]: the fit of the views on the path to this state gives the light. At first every place
+/// explains the view by a light of its own; later views agree with one of them only.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -126,7 +126,7 @@ impl ViewLocalizer {
         Ok(outcome)
     }
 
-    /// Back to nothing known: what to do after a kidnapping is somebody's decision, never the filter's.
+    /// Resets the belief to uniform. The caller decides what to do after a kidnapping, never the filter.
     pub fn reset(&mut self) {
         let n = self.disturbances.len();
         self.filter = DiscreteFilter::uniform(n).expect("invariant: there were states before");
@@ -166,7 +166,7 @@ impl ViewLocalizer {
         &self.appearance
     }
 
-    /// How likely state `other` would look as `state` does, in the best condition and with what is known of the disturbance there.
+    /// Likelihood of the view of `state` in state `other`, in the best condition and with the estimated disturbance there.
     pub(crate) fn confusion(&self, state: usize, other: usize) -> LogWeight {
         let n = self.places.len();
         let condition = self.filter.best().state / n;

@@ -42,7 +42,7 @@ impl MomentTransition<'_> {
         }
     }
 
-    /// The transition, and a share that goes everywhere: light and shift stay the same wherever the robot is carried.
+    /// The transition, with a share that becomes uniform: light and shift stay the same after a kidnapping.
     fn arriving(&self, leaving: Vec<f64>) -> Vec<f64> {
         let mut arriving = vec![0.0; leaving.len()];
         self.transition.predict(&leaving, &mut arriving);

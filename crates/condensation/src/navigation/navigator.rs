@@ -8,7 +8,7 @@ use crate::{
     SlipProbabilities, SparseTransition, ViewLocalizer,
 };
 
-/// Where a robot moves and looks: a simulation, or the robot itself.
+/// Where a robot moves and takes views: a simulation, or the robot itself.
 pub trait NavigationEnvironment<A> {
     /// Does an action, as well as it can.
     fn act(&mut self, action: A);
@@ -37,7 +37,7 @@ pub struct NavigatorParams {
 }
 
 impl Default for NavigatorParams {
-    /// Stops at 99.9 % in three looks, at the latest after 80 moves.
+    /// Stops at 99.9 % in three views, at the latest after 80 moves.
     fn default() -> Self {
         Self {
             goal_confidence: 0.999,
@@ -95,7 +95,7 @@ impl<S: DiscreteStateSpace> Navigator<S> {
         &self.space
     }
 
-    /// Drives to `goal`; `watch` is shown the localizer after every look.
+    /// Drives to `goal`; `watch` gets the localizer after every view.
     ///
     /// # Errors
     /// [`CondensationError::State`] when the goal does not exist, [`CondensationError::Dimension`] when the localizer is of another space,
@@ -159,7 +159,7 @@ fn start_over_if_elsewhere(
     let elsewhere = monitor.observe(outcome.log_likelihood_ratio())?;
     if elsewhere {
         localizer.reset();
-        let _ = localizer.update(features)?; // impossible even from scratch: the next look decides
+        let _ = localizer.update(features)?; // impossible even for a uniform belief: the next view decides
     }
     Ok(elsewhere)
 }

@@ -19,10 +19,10 @@ pub struct NavigationReport {
     pub arrival: NavigationOutcome,
     /// Moves that were made.
     pub steps: usize,
-    /// Moves until confidence first was what the parameters ask for, if it ever was.
+    /// Moves until the confidence first reached the value in the parameters, if it did.
     pub steps_to_certainty: Option<usize>,
-    /// The place that is believed in at the end, and how much.
+    /// The most probable place at the end, with its probability.
     pub best: MostProbableState,
-    /// How often the robot noticed that it was elsewhere, and started over.
+    /// Number of detected kidnappings, each with a new start.
     pub kidnappings: usize,
 }

@@ -33,10 +33,10 @@ fn value_at(rank: f64, ranks: &[f64; 256]) -> f64 {
     (above - 1) as f64 + if high > low { (rank - low) / (high - low) } else { 0.0 }
 }
 
-/// The [`LightChange`](crate::LightChange) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
+/// The [`LightChange`](crate::LightChange) in which `learned` matches `seen`, by least squares between the quantiles of all three channels; for
 /// [`LightChange::inverse_table`](crate::LightChange::inverse_table).
 ///
-/// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as a matched histogram would.
+/// One curve for all channels: three numbers from the whole scene cannot follow objects that leave the view, as a matched histogram would.
 /// None when the learned scene has no contrast.
 ///
 /// ```

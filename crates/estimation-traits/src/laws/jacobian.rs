@@ -8,7 +8,7 @@ use crate::{Jacobian, Manifold, derivative::central_difference, epsilon, to_f64}
 
 /// Whether `claimed` is the derivative of `function` at `point`.
 ///
-/// Two central differences, one step twice the other, tell how good they are themselves by their difference; coordinates of the given
+/// Two central differences, one step twice the other, give an estimate of their own error by their difference; coordinates of the given
 /// `size` add their rounding over the step.
 pub(super) fn agrees<X, Z>(
     law: &'static str,

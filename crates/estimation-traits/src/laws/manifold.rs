@@ -70,7 +70,7 @@ where
 
 /// A manifold that closes on itself: going `period` along `axis` leads back.
 ///
-/// A bearing that does not wrap obeys every other law, as a number on the line; this one tells it from an angle.
+/// A bearing that does not wrap obeys every other law, as a number on the line; this law distinguishes it from an angle.
 ///
 /// ```
 /// use wayfix_estimation_traits::{Pose2, laws};

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{Manifold, MotionModel, SampleMotion, StateAlloc, Tangent, TangentMatrix, to_f64};
 
-/// Standard errors that an average may be off. One in 1.7 million honest averages is further out; a suite of 27 entries (a spatial pose)
+/// Standard errors that an average may be off. One in 1.7 million averages of a correct model is further out; a suite of 27 entries (a spatial pose)
 /// raises a false alarm once in 60 000 seeds.
 const STANDARD_ERRORS: f64 = 5.0;
 

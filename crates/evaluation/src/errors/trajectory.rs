@@ -36,7 +36,7 @@ impl PoseWithTruth {
     }
 
     /// Normalized estimation error squared, $`e^T P^{-1} e`$ with $`e`$ the truth seen from the estimate; chi-squared with three degrees
-    /// of freedom for an honest filter. `None` while some direction is known exactly.
+    /// of freedom for a consistent filter. `None` while some direction is known exactly.
     pub fn nees(&self) -> Option<f64> {
         self.nees_of(&self.error())
     }

@@ -1,7 +1,7 @@
 /// Figures by the end of their names, or by the beginning where it ends in `_`; the first match counts.
 const MEANINGS: [(&str, &str); 87] = [
     ("n_localized_views", "views after which the pose was estimated"),
-    ("unimodal_share", "share of the views after which one place only was believed"),
+    ("unimodal_share", "share of the views after which only one place had a high probability"),
     ("n_labelled_images", "images with true labels of their pixels"),
     ("factorization_gflop", "10⁹ additions and multiplications of one sparse Cholesky factorization"),
     ("range_bias_m", "estimated constant error of the ranges"),
@@ -98,9 +98,9 @@ const MEANINGS: [(&str, &str); 87] = [
     ("reacquired_share", "share of the films in which the target was found again after it was hidden"),
     ("lost_detection_recall", "share of the frames without a visible target that were reported lost"),
     ("center_error_mean_px", "distance of the centre of the target from the truth"),
-    ("classification_rate", "share of the labelled pixels that got their true colour class"),
+    ("classification_rate", "share of the labelled pixels with the correct colour class"),
     ("rate_", "share that is right"),
-    ("classification_rate_", "share of the labelled pixels of a class that got their true colour class"),
+    ("classification_rate_", "share of the labelled pixels of a class with the correct colour class"),
     ("ess_mean", "mean effective number of particles"),
     ("n_particles_mean", "mean number of particles"),
     ("position_", "distance from the true position"),

@@ -59,7 +59,7 @@ pub struct ReportRun {
     /// Remarks for the reader, a paragraph each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Assumptions and doubts for the user, a sentence each.
+    /// Assumptions and warnings for the user, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// MCAP of the estimates, relative to the folder of the report.

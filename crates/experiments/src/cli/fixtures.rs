@@ -22,7 +22,7 @@ pub(super) enum Command {
         /// Number of kinds of light, from dark to bright.
         #[arg(long, default_value_t = 2)]
         lights: usize,
-        /// Of any lamp and any camera, instead of the simulated halls.
+        /// Learn broad priors for any lamp and any camera, instead of those of the simulated halls.
         #[arg(long)]
         broad: bool,
     },

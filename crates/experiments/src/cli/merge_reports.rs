@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use super::regress::show;
 use crate::regress::{CampaignShard, ShardResults, assemble, join};
 
-/// Merge the shares of a regression that several machines have run into one report.
+/// Merge the shares of a regression, run on several machines, into one report.
 ///
 /// Each share is the output folder of one `wayfix-experiments regress --shard K/N`. The report, its figures and its exit code equal those of one
 /// machine that runs everything, except for times. Shares of another campaign, and missing or repeated ones, are errors.

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use wayfix_evaluation::terminal::print_message;
 
-/// The experiments of Wayfix: every system on stored logs and public recordings, with the figures of papers and other programs beside ours.
+/// The experiments of Wayfix: every system on stored logs and public recordings, compared with the figures of papers and other programs.
 ///
 /// Examples:
 ///   wayfix-experiments regress                    every system on the stored logs

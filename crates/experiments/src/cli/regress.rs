@@ -19,7 +19,7 @@ use crate::regress::{
 ///
 /// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). The exit code is 0 if every
 /// figure is within its bounds, else 1. OUT/index.html shows trajectories, maps and figures; it is written after every run, so that
-/// Ctrl-C leaves the finished runs and --resume goes on.
+/// Ctrl-C keeps the finished runs and --resume continues.
 ///
 /// Without names the stored logs of all suites run. A suite, a run or --all runs the experiments too, and public recordings if available.
 #[derive(clap::Args)]
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// Stored logs and short experiments only; the default without names.
     #[arg(long)]
     quick: bool,
-    /// Go on with a call that was interrupted: the finished runs in OUT are not run again.
+    /// Continue an interrupted call: the finished runs in OUT are not run again.
     #[arg(long, conflicts_with = "bless")]
     resume: bool,
     /// Folder of public recordings: utias_mrclam/MRCLAM_Dataset7, range_bearing/slam_100.txt and others (docs/accuracy.md). Without it
@@ -52,13 +52,13 @@ pub(super) struct Arguments {
     /// Repeat every run with this number of seeds, from --seed on, and report means with 95 % intervals.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "bless")]
     seeds: u64,
-    /// Do the K-th of N shares of the work and write OUT/part.json; `wayfix-experiments merge-reports` makes one report of all shares.
+    /// Run the K-th of N shares of the work and write OUT/part.json; `wayfix-experiments merge-reports` makes one report of all shares.
     #[arg(long, value_name = "K/N", default_value_t = CampaignShard::WHOLE, hide_default_value = true, conflicts_with = "bless")]
     shard: CampaignShard,
     /// Store the present figures of the stored logs as the reference; review the change first.
     #[arg(long)]
     bless: bool,
-    /// Store how long the runs take (fixtures/costs.json), for the estimate at the start. Use it with --threads 1.
+    /// Store the computing time of the runs (fixtures/costs.json), for the estimate at the start. Use it with --threads 1.
     #[arg(long, hide_short_help = true)]
     store_costs: bool,
     /// Threads [default: one a core]. The figures do not depend on it.

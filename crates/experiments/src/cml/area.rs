@@ -22,7 +22,7 @@ struct Lapped {
     published: SimulatedDriveResult,
 }
 
-/// Seven laps around shelves from an empty map, odometry as it is. [Gross et al. 2005, Fig. 4] Length and share of the setup play no part.
+/// Seven laps around shelves from an empty map, raw odometry. [Gross et al. 2005, Fig. 4] Length and share of the setup play no part.
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
@@ -46,10 +46,8 @@ pub(crate) fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
     let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
-    let note = format!(
-        "{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, odometry as it is.",
-        setup.n_seeds
-    );
+    let note =
+        format!("{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, raw odometry.", setup.n_seeds);
     Ok(ReportRun { metrics, figures, notes: vec![note], ..ReportRun::default() })
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun
         }));
     }
     let note = format!(
-        "{} seeds; an area of 25 m × 10 m with {N_PEOPLE} people, {} m, empty map, odometry as it is.",
+        "{} seeds; an area of 25 m × 10 m with {N_PEOPLE} people, {} m, empty map, raw odometry.",
         setup.n_seeds, setup.length_m
     );
     Ok(ReportRun { metrics, notes: vec![note], ..ReportRun::default() })

@@ -59,7 +59,7 @@ pub(crate) fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<Report
         ],
     );
     let note = format!(
-        "{} seeds; a store of 80 m × 50 m, {} m to learn, as much four weeks later and again with what was learned then, {:.0} % of the shelf sections rearranged, {N_PEOPLE} people.",
+        "{} seeds; a store of 80 m × 50 m, a drive of {} m to learn, one of the same length four weeks later, and one more with the adapted map; {:.0} % of the shelf sections rearranged, {N_PEOPLE} people.",
         setup.n_seeds,
         setup.length_m,
         100.0 * setup.rearranged_share

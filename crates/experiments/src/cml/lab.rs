@@ -53,7 +53,7 @@ pub(crate) fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<Repo
         ..LinePlot::default()
     };
     let note = format!(
-        "{} seeds; somebody switches lamps or draws a curtain every {SWITCHING_S} s in the mean; empty map, odometry as it is.",
+        "{} seeds; lamps are switched or a curtain is drawn every {SWITCHING_S} s in the mean; empty map, raw odometry.",
         setup.n_seeds
     );
     Ok(ReportRun { metrics, figures: vec![plot.draw()?], notes: vec![note], ..ReportRun::default() })

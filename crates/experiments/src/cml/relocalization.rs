@@ -48,14 +48,14 @@ pub(crate) fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<Repo
             &trip,
         )
     })?;
-    report("From anywhere", setup, &courses)
+    report("Global localization", setup, &courses)
 }
 
 /// Number of kidnapped robots, after 20 m of correct tracking, that end near the truth after another 20 m.
 /// # Errors
 /// Returns the errors of [`global_start`].
 pub(crate) fn kidnapped(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
+    report("Error after a kidnapping", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
 }
 
 /// Number of kidnapped and relocalized robots that diverge in the next 60 m: to the pose that they would have without the kidnapping, or to
@@ -84,11 +84,11 @@ pub(crate) fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Res
         Metric::new("diverged_at_end_share", share(n_diverged_at_end), ""),
     ];
     let note = format!(
-        "{} carried robots, of whom {} are within {NEAR_M} m after {TRAVEL_M} m; led away: further off than {DIVERGED_M} m at some time up to {FOLLOWED_M} m. Stores as for `kidnapped`; routes are longer and others.",
+        "{} kidnapped robots; {} are within {NEAR_M} m after {TRAVEL_M} m. Diverged: error above {DIVERGED_M} m at some time up to {FOLLOWED_M} m. Stores as for `kidnapped`; routes are longer and different.",
         courses.len(),
         found.len()
     );
-    let figures = vec![quantiles("Carried away, and on", &courses).draw()?];
+    let figures = vec![quantiles("Error after a kidnapping, with a longer drive", &courses).draw()?];
     Ok(ReportRun { metrics, figures, notes: vec![note], ..ReportRun::default() })
 }
 
@@ -173,7 +173,7 @@ fn report(title: &str, setup: &CmlExperimentSetup, courses: &[SimulatedDriveResu
         Metric::new("success_share_high95", high, ""),
     ];
     let note = format!(
-        "{n} runs of {TRAVEL_M} m, {RUNS_PER_STORE} a store of 80 m × 50 m whose map was taught along {} m, {:.0} % of the shelf sections rearranged since, in aisles that were taught; success: within {NEAR_M} m at the end.",
+        "{n} runs of {TRAVEL_M} m, {RUNS_PER_STORE} a store of 80 m × 50 m with a map taught along {} m. {:.0} % of the shelf sections are rearranged since, in taught aisles. Success: within {NEAR_M} m at the end.",
         setup.length_m,
         100.0 * REARRANGED
     );

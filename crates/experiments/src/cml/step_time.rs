@@ -38,7 +38,7 @@ pub(crate) fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportR
     let first = learned.steps.len().min(N_REFERENCES[0]);
     let mut map = taught(&SimulatedDrive { steps: learned.steps[..first].to_vec() })?;
     let mut more = between(&learned).skip(first);
-    // Half way along the part that every map contains, away from the drive.
+    // Halfway along the part that every map contains, away from the drive.
     let elsewhere = StartPosePrior::Known(surveyed(learned.steps[first / 2].pose)?);
     let astray = LocalizerParams { map_learning: MapLearning::Static, ..setup.localizer };
     let (mut steps, mut doubts, mut searches) = (Vec::new(), Vec::new(), Vec::new());
@@ -65,12 +65,9 @@ pub(crate) fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportR
         x_label: "references".to_owned(),
         y_label: "ms".to_owned(),
         series: vec![
-            PlotSeries::new(
-                format!("a robot that knows where it is: median of {N_STEPS} steps"),
-                steps.clone(),
-            ),
-            PlotSeries::new("one that is elsewhere: 95 % of the steps", doubts.clone()),
-            PlotSeries::new("a search of the whole map, for one that does not", searches.clone()),
+            PlotSeries::new(format!("localized robot: median of {N_STEPS} steps"), steps.clone()),
+            PlotSeries::new("kidnapped robot: 95 % of the steps", doubts.clone()),
+            PlotSeries::new("global localization: a search of the whole map", searches.clone()),
         ],
         x_scale: AxisScale::Log10,
         y_scale: AxisScale::Log10,
@@ -105,7 +102,7 @@ fn between(trip: &SimulatedDrive) -> impl Iterator<Item = (PanoramaDescriptor, P
     })
 }
 
-/// Seconds of searches without a belief.
+/// Seconds of searches without a prior belief.
 fn search_s(map: &PanoramaMap, trip: &SimulatedDrive, params: &LocalizerParams) -> Vec<f64> {
     let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
     let search = |view: &PanoramaDescriptor| {

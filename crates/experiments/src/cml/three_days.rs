@@ -27,7 +27,7 @@ struct Day {
     published: SimulatedDriveResult,
 }
 
-/// Three days from an empty map, odometry as it is; each day begins where the robot is charged. [Gross et al. 2005, Fig. 6]
+/// Three days from an empty map, raw odometry; each day begins where the robot is charged. [Gross et al. 2005, Fig. 6]
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
@@ -59,7 +59,7 @@ pub(crate) fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<Report
         figures.push(MapPlot { title, ..plan(&last.building, &last.trip, &last.course) }.draw()?);
     }
     let note = format!(
-        "{} seeds; {} m × {} m of a store, {} m a day, {:.0} % of the shelf sections rearranged over night, {N_PEOPLE} people.",
+        "{} seeds; {} m × {} m of a store, {} m a day, {:.0} % of the shelf sections rearranged every night, {N_PEOPLE} people.",
         setup.n_seeds,
         SIZE_M[0],
         SIZE_M[1],

@@ -18,7 +18,7 @@ use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
 
 /// Maximum position error of a successful run, m.
 const NEAR_M: f64 = 0.2;
-/// Frames that a run has: to find out where it is, or to notice that it was carried away and find out anew.
+/// Number of frames of a run, for global localization or for relocalization after a kidnapping.
 const FRAMES: usize = 60;
 /// Number of final frames that must satisfy it; a single one could be chance.
 const LAST_FRAMES: usize = 5;
@@ -63,7 +63,7 @@ pub(crate) fn global_start(
     Ok(ConvergenceCount { kidnapped: false, trials })
 }
 
-/// Starts near the truth, and is carried away after 40 frames.
+/// Starts near the truth; the robot is kidnapped after 40 frames.
 ///
 /// # Errors
 /// Returns the errors of [`global_start`].
@@ -142,7 +142,7 @@ impl ConvergenceCount {
             self.trials.iter().filter(|trial| trial.reported_tracking && !trial.succeeded()).count();
         let (low, high) = proportion_interval(n_succeeded as u64, n as u64);
         let mut notes = vec![format!(
-            "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
+            "{n} halls, one for each run, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
         )];
         let failed: Vec<String> =
             self.trials.iter().filter(|t| !t.succeeded()).map(|t| t.seed.to_string()).collect();
@@ -167,7 +167,7 @@ impl ConvergenceCount {
     fn plot(&self) -> LinePlot {
         let n_frames = self.trials.iter().map(|trial| trial.errors.len()).max().unwrap_or(0);
         let title =
-            if self.kidnapped { "Carried away at frame 40" } else { "From anywhere, in unknown light" };
+            if self.kidnapped { "Kidnapped at frame 40" } else { "Global localization in unknown light" };
         error_quantiles(title, "frame", n_frames, |frame| {
             let errors = self.trials.iter().filter_map(|trial| trial.errors.get(frame).copied());
             (frame as f64, errors.collect())

@@ -16,7 +16,7 @@ const N_PARTICLES: [usize; 5] = [100, 300, 1000, 3000, 10_000];
 /// Frames of the log that are used.
 const N_FRAMES: usize = 40;
 
-/// Computing time of a frame against the number of particles. Times change from call to call, and other runs of a report go on beside this one.
+/// Computing time of a frame against the number of particles. Times vary from call to call, and other runs of a report run in parallel.
 ///
 /// # Errors
 /// Returns an error if no image of the log can be used, or the picture not be drawn.

@@ -28,7 +28,7 @@ pub(super) const VAGUE: [f64; 3] = [0.25, 0.5, 0.25];
 pub(super) struct LocalizationRun {
     /// One distribution over the places a frame.
     pub(super) beliefs: Vec<Vec<f64>>,
-    /// The place believed in most.
+    /// The most probable place.
     pub(super) best: Vec<usize>,
     /// Number of neighbouring frames that count as one.
     pub(super) correlation_length: f64,

@@ -35,7 +35,7 @@ fn beliefs(variants: &[(DescriptorKind, Variants)]) -> Result<SvgPlot> {
         let image = EncodedImage::png_rgb(size.0, size.1, &pixels)?;
         frames.push(FilmStripFrame { image, caption: kind.title().to_owned() });
     }
-    film.rows = vec![("frames to the right, places up; dark: believed, red: true".to_owned(), frames)];
+    film.rows = vec![("frames to the right, places up; dark: probable, red: true".to_owned(), frames)];
     Ok(film.draw()?)
 }
 
@@ -59,7 +59,7 @@ fn errors(variants: &[(DescriptorKind, Variants)]) -> LinePlot {
         PlotSeries::new(kind.title(), points.collect())
     };
     LinePlot {
-        title: "How far off the best place is".to_owned(),
+        title: "Error of the most probable place".to_owned(),
         x_label: "frame".to_owned(),
         y_label: "places".to_owned(),
         series: variants.iter().map(series).collect(),
@@ -78,7 +78,7 @@ fn film(traverses: &Traverses, kind: DescriptorKind, journey: &LocalizationRun) 
     }
     let size = &traverses.seen[0].picture;
     let film = FilmStrip {
-        title: format!("What the robot sees, and the place it believes in ({})", kind.title()),
+        title: format!("The robot's view, and its most probable place ({})", kind.title()),
         rows: vec![("seen".to_owned(), seen), ("learned there".to_owned(), believed)],
         frame_size: (size.width(), size.height()),
     };

@@ -53,7 +53,7 @@ pub(crate) fn active(film: &SyntheticFilm, seeds: Range<u64>, rate: f64) -> Resu
         Metric::new("n_frames_lost", scores.iter().map(|score| score.n_lost).sum::<usize>() as f64, ""),
         Metric::new("false_tracked_share", status.false_tracked_share(), ""),
     ];
-    let notes = vec![format!("{} seeds, a command {DELAY} pictures late.", scores.len())];
+    let notes = vec![format!("{} seeds; a command acts {DELAY} pictures later.", scores.len())];
     Ok(ReportRun { metrics, notes, ..ReportRun::default() })
 }
 

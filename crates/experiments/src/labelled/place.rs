@@ -58,7 +58,7 @@ impl Place {
 pub(super) fn prior_without(left_out: usize, places: &[Place], colors: &[String]) -> Result<LightingPriors> {
     let others = places.iter().enumerate().filter(|(at, _)| *at != left_out);
     let venues: Vec<TrainingVenue> = others.map(|(_, place)| place.training.clone()).collect();
-    // One image a venue does not tell how its mean scatters.
+    // One image a venue does not show how its mean scatters.
     let mean_color_variance = Some(LightingFilterParams::default().mean_color_variance);
     let params = PriorLearningParams { mean_color_variance, ..PriorLearningParams::default() };
     learn_grouped_priors(colors, &venues, &vec![0; venues.len()], &params)

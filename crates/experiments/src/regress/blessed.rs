@@ -46,7 +46,8 @@ impl ReferenceFigures {
             None => false,
         };
         let n_changed = run.metrics.iter().filter(differs).count();
-        let source = "figures of the stored logs, blessed in the tree; `--bless` after looking at the change";
+        let source =
+            "figures of the stored logs, as accepted in the tree; `--bless` accepts a change after a check";
         Some(Metric::new("n_figures_changed", n_changed as f64, "").at_most(0.0).bound_from(source))
     }
 }

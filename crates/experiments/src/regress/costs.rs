@@ -103,14 +103,14 @@ fn name(run: &SeededRun) -> String {
     format!("{}/{}", run.suite, run.run)
 }
 
-/// Seconds that this thread has computed so far, which other programs do not lengthen; 0 where the system does not tell.
+/// Seconds that this thread has computed so far, which other programs do not lengthen; 0 where the system does not report it.
 pub(crate) fn thread_seconds() -> f64 {
     let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = text.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
     nanoseconds.map_or(0.0, |nanoseconds| 1e-9 * nanoseconds)
 }
 
-/// Seconds of a short computation, the shortest of several: the measure of a machine. 0 where the system does not tell.
+/// Seconds of a short computation, the shortest of several: the measure of a machine. 0 where the system does not report it.
 pub(crate) fn calibration_seconds() -> f64 {
     const REPEATS: usize = 5;
     let once = |_| {

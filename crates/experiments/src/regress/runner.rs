@@ -54,7 +54,7 @@ pub(crate) struct CompletedRun {
 ///
 /// # Errors
 /// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error, and so is one that
-/// panics: the others go on.
+/// panics: the others continue.
 pub(crate) fn run_shard(
     options: &RegressOptions,
     shard: CampaignShard,

@@ -25,7 +25,7 @@ pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
             Method::Oracle => {
                 mean = mean
                     .at_least(0.9985)
-                    .bound_from("0.999 is what says that the definition of the pixels is sound");
+                    .bound_from("0.999 shows that the definition of the pixels is right");
             }
             _ => {}
         }
@@ -61,7 +61,7 @@ pub(super) fn note(scores: &[VenueScore]) -> String {
         format!(" ({:.2} ± {:.2} nats a venue)", gain.mean, gain.half_width)
     });
     format!(
-        "The mean ball of a venue left out, foretold with the carpet's help (joint prior) and without it (independent prior): {verdict}{interval}."
+        "The mean ball of a venue left out, predicted with the carpet (joint prior) and without it (independent prior): {verdict}{interval}."
     )
 }
 
@@ -73,7 +73,7 @@ pub(super) fn plots(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<SvgPl
         PlotSeries::new(method.title(), points.collect())
     });
     let rates = LinePlot {
-        title: "Ball and carpet told apart in a venue left out".to_owned(),
+        title: "Separation of ball and carpet in a venue left out".to_owned(),
         x_label: "venue, in the order of the ellipses' legend".to_owned(),
         y_label: "share of pixels".to_owned(),
         series: series.collect(),

@@ -127,11 +127,11 @@ fn start(
     Gaussian::new(mean, DMatrix::from_diagonal(&variances))
 }
 
-/// Aitken's estimate of what further iterations gain, if the gains go on as a geometric series. [Böhning et al. 1994]
+/// Aitken's estimate of what further iterations gain, if the gains continue as a geometric series. [Böhning et al. 1994]
 fn left_to_gain(objective: &[LogWeight]) -> f64 {
     let [.., before, last, now] = objective else { return f64::INFINITY };
     let (earlier, gain) = (last - before, now - last);
-    // Below the rounding of the objective itself, no gain can be told from none.
+    // Below the rounding of the objective itself, a gain cannot be distinguished from none.
     if gain.abs() <= 16.0 * f64::EPSILON * now.abs() {
         return 0.0;
     }

@@ -61,7 +61,7 @@ where
         check::dimension("prior", n, mean.nrows())?;
         check::shape("prior covariance", (n, n), covariance.shape())?;
         check::positive_definite("prior", &covariance)?;
-        // No certificate looks at the other triangle of an unchecked Gaussian.
+        // No certificate covers the other triangle of an unchecked Gaussian.
         covariance.fill_upper_triangle_with_lower_triangle();
         Ok(Self { motion, estimate: Gaussian::from_parts_unchecked(mean, covariance), floor: T::zero() })
     }

@@ -25,7 +25,7 @@ const EXACT_COMPARISON_COST: usize = 100;
 /// use nalgebra::Vector2;
 /// use wayfix_line_extract::{PointDistanceReference, douglas_peucker, simplify};
 ///
-/// // Each split takes one point off: looking at all of them every time would take 5e9 looks.
+/// // Each split takes one point off: testing all of them every time would take 5e9 tests.
 /// let tooth = |k: i32| if k % 2 == 0 { 0.0 } else { 1e3 - 1e-2 * f64::from(k) };
 /// let zigzag: Vec<_> = (0..100_000).map(|k| Vector2::new(f64::from(k), tooth(k))).collect();
 /// assert_eq!(simplify(&zigzag, 1e-6)?.len(), zigzag.len());
@@ -71,7 +71,7 @@ impl Default for PolylineSimplifier {
 }
 
 impl PolylineSimplifier {
-    /// Asks the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
+    /// Queries the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
     pub fn hull_tree_only() -> Self {
         Self { scan_budget: 0, ..Self::default() }
     }

@@ -12,7 +12,7 @@ impl<X: Clone + Send> ParticleSet<X> {
     /// Sequential importance sampling with any proposal: `step` draws the next state in place of the old one and returns its incremental
     /// weight $`\log \frac{p(z | x) \, p(x | x_{k-1})}{q(x | x_{k-1}, z)}`$. [Doucet, Godsill & Andrieu 2000]
     ///
-    /// For proposals that look at the measurement, and for Rao-Blackwellised particles, whose conditional part is corrected on the way.
+    /// For proposals that use the measurement, and for Rao-Blackwellised particles, whose conditional part is corrected on the way.
     /// `prepare` makes something once a chunk of particles: a curried model, working memory.
     ///
     /// # Errors

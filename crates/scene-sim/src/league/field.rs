@@ -55,7 +55,7 @@ pub fn field_map() -> Result<ColorMap, SimulationError> {
     Ok(ColorMap::new(COLOR_NAMES.map(str::to_owned).to_vec(), shapes)?)
 }
 
-/// Distinctive points to look at: the middles of the beacons' bands and of the goals, m.
+/// Distinctive points for the camera to point at: the middles of the beacons' bands and of the goals, m.
 pub fn landmarks() -> Vec<Vector3<f64>> {
     let beacons = beacon_places().map(|(x, y)| Vector3::new(x, y, 0.3));
     let goals = [-1.0, 1.0].map(|side| Vector3::new(side * (HALF_LENGTH_M + GOAL_DEPTH_M), 0.0, 0.15));

@@ -15,7 +15,7 @@ impl MonobotRun {
     /// use wayfix_sensor_log::Stamp;
     /// let run = MonobotParams::default().simulate(&mut RandomStreams::new(ChaCha8Rng::seed_from_u64(1)))?;
     /// let records = run.records(Stamp::from_nanoseconds(0), 100);
-    /// assert_eq!(records.len(), 1 + 101 + 100 + 101); // landmark, true poses, increments, looks
+    /// assert_eq!(records.len(), 1 + 101 + 100 + 101); // landmark, true poses, increments, observations
     /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     pub fn records(&self, start: Stamp, period_ms: u32) -> Vec<Record> {

@@ -50,7 +50,7 @@ fn loop_unlabelled() -> PlanarDriveParams {
 }
 
 /// Five minutes in a hall of 6 × 6 m in the manner of the UTIAS logs: velocity odometry, a camera that reads codes, range errors
-/// that grow with range and hang together in time, two other robots, codes that no table lists.
+/// that grow with range and are correlated in time, two other robots, codes that no table lists.
 fn office_velocity() -> PlanarDriveParams {
     let wander = |half_width_m| {
         RouteParams::Waypoints(RandomWaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })

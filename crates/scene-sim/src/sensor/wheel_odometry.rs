@@ -23,9 +23,9 @@ pub struct WheelOdometryParams {
     pub encoding: OdometryEncoding,
     /// Length of a period, milliseconds. Default 100.
     pub period_ms: u32,
-    /// Wheel radius believed, metres. Default 0.05.
+    /// Wheel radius that the odometry assumes, metres. Default 0.05.
     pub wheel_radius_m: f64,
-    /// Track believed, metres. Default 0.30.
+    /// Track that the odometry assumes, metres. Default 0.30.
     pub wheel_separation_m: f64,
     /// Encoder ticks per turn of a wheel; `None` measures angles exactly. Default 2000.
     pub ticks_per_turn: Option<u32>,

@@ -25,7 +25,7 @@ pub(super) fn position(fix: &NavSatFix<'_>) -> Result<RecordData, Fault> {
 /// The heading of the robot by an IMU that is mounted on it.
 pub(super) fn heading(imu: &Imu<'_>, mount: Option<&Pose3<f64>>) -> Result<RecordData, Fault> {
     if imu.covariance[0] == -1.0 {
-        return Err(inconsistent("the IMU tells no orientation"));
+        return Err(inconsistent("the IMU gives no orientation"));
     }
     let orientation = spatial([0.0; 3], imu.orientation)?.rotation;
     let robot = mount.map_or(orientation, |mount| orientation * mount.rotation.inverse());

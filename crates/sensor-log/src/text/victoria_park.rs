@@ -3,7 +3,7 @@
 //! | file | columns (the first row names them) |
 //! | --- | --- |
 //! | `odometry.csv` | `t_s,speed_mps,steering_rad`: the encoder of the rear left wheel and the steering |
-//! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead; a fifth column `landmark`, which may be there, says which tree it is, and is empty where nobody knows |
+//! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead; an optional fifth column `landmark` identifies the tree; it is empty for an unknown tree |
 //! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna, which are the truth; a fourth column `sigma_m`, which may be there, makes a fix a measurement with this standard deviation where it is not empty; the file may be missing |
 //!
 //! Bearings follow REP 103, 0 ahead, and are relative to the laser, which is 3.78 m ahead of the rear axle and 0.5 m left.

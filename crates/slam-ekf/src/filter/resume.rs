@@ -145,7 +145,7 @@ fn check_count(name: &'static str, count: usize, largest: usize) -> Result<(), S
     Err(SlamError::Parameter {
         name,
         value: count as f64,
-        range: "no look later than the last one, and countable",
+        range: "no scan later than the last one, and countable",
     })
 }
 

@@ -1,7 +1,7 @@
 use nalgebra::Matrix3;
 use wayfix_estimation_traits::{MotionModel, Pose2};
 
-/// A stretch of time of which no record tells the motion: the robot is where it was, with a covariance in the body frame.
+/// An interval for which no record gives the motion: the mean stays, with a covariance in the body frame.
 #[derive(Clone, Copy, Debug)]
 pub struct UnknownMotion(pub Matrix3<f64>);
 

@@ -52,7 +52,7 @@ fn position_metrics(run: &PointRun) -> Vec<Metric> {
     metrics
 }
 
-/// Mean NEES of the positions, 2 for an honest filter, where the parameters tell the noise of the true ones.
+/// Mean NEES of the positions, 2 for a consistent filter; only if the parameters give the noise of the true positions.
 fn position_nees(run: &PointRun) -> Option<f64> {
     let (external, antenna) = run.system.front_end.external();
     let truth = Matrix2::identity() * external.position_sigma?.powi(2);

@@ -44,7 +44,7 @@ struct Waiting {
 }
 
 impl PointFollower {
-    /// The follower that the parameters ask for; it starts from the state of a filter.
+    /// The follower that the parameters request; it starts from the state of a filter.
     pub(super) fn wanted(
         params: &PointSlamParams,
         filter: &EkfSlam<PointSensor>,

@@ -238,7 +238,7 @@ impl PointSlamFrontEnd {
         Ok(())
     }
 
-    /// The robot may have moved as fast as it usually does while no record tells its motion.
+    /// Without a record of its motion, the robot may have moved at its usual speed.
     fn predict_unknown_motion(&mut self, seconds: f64, estimator: &mut Points) -> Result<(), String> {
         if seconds <= 0.0 {
             return Ok(());

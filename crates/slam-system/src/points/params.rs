@@ -59,18 +59,18 @@ pub struct PointSlamParams {
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
     pub unlabelled_confirmation: LandmarkConfirmationParams,
-    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    /// Whether to record what the run observes; a command-line option, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
     /// Whether to keep the text of the batch.
     #[serde(skip)]
     pub record_graph: bool,
-    /// Whether a smoother follows the filter; asked for on the command line too.
+    /// Whether a smoother follows the filter; a command-line option too.
     #[serde(skip)]
     pub smoothing: Smoothing,
 }
 
-/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
+/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MountingParams {
@@ -78,7 +78,7 @@ pub struct MountingParams {
     pub sensor_x: f64,
     /// The range-bearing sensor, m.
     pub sensor_y: f64,
-    /// Which way it looks, rad; 0 ahead, counter-clockwise.
+    /// Its direction, rad; 0 ahead, counter-clockwise.
     pub sensor_heading: f64,
     /// The antenna whose positions the log has, m.
     pub antenna_x: f64,
@@ -94,7 +94,7 @@ pub struct RobotTimingParams {
     pub sensor_latency: f64,
     /// Time from the stamp of a velocity command to the motion it makes, s.
     pub command_delay: f64,
-    /// Time that a commanded turn loses: it lasts this much shorter than the log says, s.
+    /// Time that a commanded turn loses: the turn is shorter than in the log by this time, s.
     pub turn_command_time_loss: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_timeout: f64,
@@ -132,7 +132,7 @@ pub enum RobotProfile {
 }
 
 impl RobotProfile {
-    /// The robot that recorded a log, as far as the format tells that it was first stored in.
+    /// The robot that recorded a log, as far as the first format of the log shows it.
     pub fn of_log(meta: &LogMetadata) -> Self {
         match meta.first_format() {
             LogFormat::Utias => Self::Utias,
@@ -253,7 +253,7 @@ impl PointSlamParams {
                 },
                 velocity_noise: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
-                    // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
+                    // Errors are correlated in time and have heavy tails, so the threshold is the mean NIS, d² = 2.
                     outlier_rule: OutlierRule::Downweight,
                     gate_probability: 0.632,
                     // The tubes of a group stand 0.18-0.3 m apart.

@@ -16,13 +16,13 @@ use wayfix_system_core::{
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose};
 
-/// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
+/// The result of EKF-SLAM with points on a log; the true map has the landmarks by identity.
 pub type PointRun = SlamRun<PointSlamFrontEnd, BTreeMap<u32, Vector2<f64>>>;
 
 /// Runs EKF-SLAM over the records of a log and shows each step to `observe`.
 ///
-/// The start pose is the truth where odometry starts, or led back to there by odometry from the first true pose after it. Where the log has positions only, it is the pose from which the first metres of the
-/// path fit them best; else the origin. Nothing else ties the run to the truth.
+/// The start pose is the true pose where odometry starts, or the first true pose after it, moved back by odometry. If the log has positions only,
+/// it is the pose with the best fit of the first metres of the path to them; else the origin. The run uses the truth for nothing else.
 ///
 /// # Errors
 /// When there is no odometry, no detection, or none that can be used, or a parameter is out of range.
@@ -213,7 +213,7 @@ fn odometry_stamp(record: &Record) -> Option<Stamp> {
     .then_some(record.stamp)
 }
 
-/// The rule that was asked for, else by identity where there are identities.
+/// The requested rule, else by identity if there are identities.
 fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<AssociationRule> {
     let association = match (asked, has_identities(records)) {
         (Some(rule), _) => rule,

@@ -14,7 +14,7 @@ use wayfix_table_log::RangeRecording;
 use super::input::StampedInput;
 use crate::slam::StampedEstimate;
 
-/// A recording of ranges that went through the batch, beside the truth.
+/// The result of the batch on a recording of ranges, with the truth.
 pub struct RangeRun {
     /// Path, beacons, calibration and noise.
     pub estimate: RangeOnlyEstimate,
@@ -39,7 +39,10 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     let begin = recording.odometry.first().map(|(stamp, _)| *stamp).unwrap_or_default();
     let known = path.at(begin).or_else(|| path.first_after(begin).map(|(_, pose)| pose));
     if known.is_none() {
-        events.warn("start_pose_unknown", "no true pose tells where the run starts: it starts at (0, 0, 0), and figures are aligned ones only");
+        events.warn(
+            "start_pose_unknown",
+            "no true pose at the start: the run starts at (0, 0, 0), and figures are aligned ones only",
+        );
     }
     let stopwatch = Stopwatch::start();
     let StampedInput { stamps, input } =
@@ -89,7 +92,7 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, event
     events.warn(
         "odometry_scale_and_direction_unknown",
         format!(
-            "no range tells scale and direction of odometry: covariances hold {:.1} % of the distance from the start, by the scale of the receiver",
+            "no range constrains scale and direction of odometry: covariances include {:.1} % of the distance from the start, by the scale of the receiver",
             100.0 * estimate.odometry_error_sigma
         ),
     );
@@ -100,7 +103,7 @@ fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, event
             unplaced.places.iter().map(|place| format!("({:.1}, {:.1})", place.x, place.y)).collect();
         let why = match places.as_slice() {
             [] => "too few ranges".to_owned(),
-            [one] => format!("its ranges hardly hold it at {one}"),
+            [one] => format!("its ranges hardly constrain it to {one}"),
             several => format!("{} fit equally well", several.join(" and ")),
         };
         let text = format!(

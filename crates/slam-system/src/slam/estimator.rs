@@ -107,7 +107,7 @@ where
         Ok(())
     }
 
-    /// Corrects robot and map by the observations of one scan. Counts what became of them; `describe` says what an unusable one measured.
+    /// Corrects robot and map by the observations of one scan. Counts their outcomes; `describe` gives the text for an unusable one.
     pub(crate) fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],

@@ -90,10 +90,10 @@ fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &m
     summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
     summary.metrics.push(Metric::new("n_unobservable_directions", free.len() as f64, ""));
     summary.notes.push(match free.as_slice() {
-        [] => "Everything about the map is tied to the world.".to_owned(),
+        [] => "All directions of the map are constrained.".to_owned(),
         free => {
             let names: Vec<String> = free.iter().map(ToString::to_string).collect();
-            format!("Nothing has ever constrained: {}.", names.join("; "))
+            format!("Never constrained: {}.", names.join("; "))
         }
     });
 }

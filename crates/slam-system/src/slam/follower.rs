@@ -28,7 +28,7 @@ where
     fn measured(&mut self, filter: &EkfSlam<M>, measurement: &MapMeasurement, motion: Pose2<f64>);
     /// The filter has an estimate at a stamp; computing time of the follower for it.
     fn estimated(&mut self, filter: &EkfSlam<M>, estimate: &StampedEstimate) -> Duration;
-    /// What it knows now of robot and map, in the form of the filter; `None` for a batch, and after a failure.
+    /// Its present estimate of robot and map, in the form of the filter; `None` for a batch, and after a failure.
     fn save(&self, filter: &EkfSlam<M>) -> Option<SlamSnapshot<M::Robot, M::Landmark>>;
     /// Everything, when the log has ended.
     ///
@@ -44,7 +44,7 @@ pub struct SmoothedRun {
     pub estimates: Decimated<StampedEstimate>,
     /// Landmarks by identity.
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
-    /// The least squares problem of a batch before it is solved, where it is asked for: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
+    /// The least squares problem of a batch before it is solved, if requested: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
     pub graph: Option<String>,
     /// Whether it is a batch over the whole log that the filter is compared with, without covariances.
     pub is_batch: bool,
@@ -56,13 +56,13 @@ pub enum Smoothing {
     /// There is none.
     #[default]
     Off,
-    /// A batch at the end, which tells how far the filter is from the optimum.
+    /// A batch at the end, which shows the distance of the filter from the optimum.
     Reference,
     /// With a fixed lag: its estimates are the result.
     FixedLag,
 }
 
-/// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance carried along a motion.
+/// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance transported along a motion.
 pub(crate) fn carried(covariance: &Matrix3<f64>, motion: &Pose2<f64>) -> Matrix3<f64> {
     use wayfix_estimation_traits::LieGroup;
     let carry = motion.inverse().adjoint();

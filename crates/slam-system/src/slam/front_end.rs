@@ -64,7 +64,7 @@ where
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError>;
 
-    /// All that it needs to go on.
+    /// All that it needs to continue.
     fn state(&self) -> Self::State;
 }
 

@@ -15,7 +15,7 @@ use super::{
     warn_of_an_empty_map,
 };
 
-/// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
+/// The result of EKF-SLAM on a log, with the truth of the log; `T` is the true map.
 pub struct SlamRun<F: FrontEnd, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
@@ -50,7 +50,7 @@ where
         }
     }
 
-    /// Passes records through the system and says what is wrong with the result.
+    /// Passes records through the system and reports the faults of the result.
     pub(crate) fn through(
         mut self,
         records: impl IntoIterator<Item = impl Borrow<Record>>,

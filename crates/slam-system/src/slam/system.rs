@@ -22,7 +22,7 @@ where
     pub(crate) estimator: SlamEstimator<F::Model>,
     /// Stamp of the last record that was taken.
     taken_until: Stamp,
-    /// Records up to this stamp were taken by the run that this one goes on from.
+    /// The previous run, which this one continues, used the records up to this stamp.
     resumed_at: Option<Stamp>,
     last_increment: Option<Stamp>,
     /// Measurements of the pose that wait for the increment that leads beyond them.
@@ -147,7 +147,7 @@ where
         self.estimator.update_moved(measurement, motion, covariance, &mut self.heading_sign)
     }
 
-    /// All that is needed to go on from here.
+    /// All that is needed to continue from here.
     pub fn save(&self) -> StateOf<F> {
         let taken_until = self.front_end.settled_until(self.taken_until);
         // Later ones are read again.

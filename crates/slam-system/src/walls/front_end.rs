@@ -34,19 +34,19 @@ pub struct WallSlamFrontEnd {
     pub(super) moves_by_velocity: bool,
     extractor: LineExtractor,
     pub(super) matcher: Option<ScanMatcher>,
-    /// The scan that was looked at last, which those after it are laid on.
+    /// The last keyframe, which later scans are matched to.
     pub(super) last_keyframe: Option<KeyframeScan>,
     /// The way since.
     pub(super) relative_motion: RelativeMotion,
     pub(super) odometry: OdometryBetweenScans,
-    /// Where the laser is now, where the log says it and the parameters do not.
+    /// The present pose of the laser, if the log gives it and the parameters do not.
     pub(super) current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places the laser, and not the parameters.
     pub(super) laser_follows_log: bool,
     plausible: IncrementPlausibilityCheck,
     /// Scans that wait for the odometry that leads up to them, oldest first.
     pub(super) waiting: VecDeque<WaitingScan>,
-    /// Heading by the points of the last scan alone, seen from the last look, rad.
+    /// Heading by the points of the last scan alone, relative to the last keyframe, rad.
     laser_heading: Option<f64>,
     /// By how much the robot has turned to each scan from the one before, by odometry and by the scans alone.
     pub(super) turns: TurnHistory,
@@ -251,7 +251,7 @@ impl WallSlamFrontEnd {
         self.take_scan(stamp, scan, &laser, estimator)
     }
 
-    /// Whether the motion during a scan is to be taken out and no odometry has told any yet.
+    /// Whether the scan must be deskewed and no odometry has given a velocity yet.
     fn needs_twist(&self, scan: &LaserScan) -> bool {
         self.params.deskew_scans && scan.beam_period > 0.0 && self.odometry.twist().is_none()
     }
@@ -303,7 +303,7 @@ impl WallSlamFrontEnd {
         Ok(())
     }
 
-    /// A scan with the motion of the laser while it was taken, by the velocity that odometry tells.
+    /// A scan with the motion of the laser during it, by the velocity of odometry.
     fn placed(&self, scan: &LaserScan, laser: &Pose2<f64>, events: &mut EventCounts) -> PlacedScan {
         let twist = self.odometry.twist().filter(|_| self.params.deskew_scans);
         let step = twist.map_or(Ok(None), |twist| beam_step(scan, laser, &twist));

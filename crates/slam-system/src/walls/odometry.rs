@@ -6,7 +6,7 @@ use wayfix_system_core::HeldVelocity;
 
 use wayfix_slam_ekf::MotionStatistics;
 
-/// The motion that a log tells, cut at the stamps of the scans.
+/// The motion in a log, cut at the stamps of the scans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OdometryBetweenScans {
     /// Stamp of the last increment, nanoseconds.
@@ -19,12 +19,12 @@ pub struct OdometryBetweenScans {
     twist: Option<Vector3<f64>>,
 }
 
-/// A motion, and how far it may be wrong beside the noise of odometry.
+/// A motion, and its possible error in addition to the noise of odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
     pub(super) increment: Pose2<f64>,
     pub(super) error: Matrix3<f64>,
-    /// Time of which nothing tells the motion, s.
+    /// Time without a measured motion, s.
     pub(super) unknown_seconds: f64,
 }
 
@@ -116,7 +116,7 @@ impl OdometryBetweenScans {
         Ok(())
     }
 
-    /// Motion a second, m/s and rad/s, in the robot's frame; `None` before odometry tells any.
+    /// Motion a second, m/s and rad/s, in the robot's frame; `None` before odometry gives any.
     pub(super) fn twist(&self) -> Option<Vector3<f64>> {
         self.twist
     }

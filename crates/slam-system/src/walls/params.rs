@@ -31,7 +31,7 @@ pub struct WallSlamParams {
     /// Start pose, m and rad; when not given, that of the log where odometry starts, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub start_pose: Option<[f64; 3]>,
-    /// Where the laser sits on the robot: x forward, y left, heading; m and rad. When not given, where the log says, or the middle.
+    /// Pose of the laser on the robot: x forward, y left, heading; m and rad. Default: that of the log, else the robot's centre.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub laser_pose: Option<[f64; 3]>,
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
@@ -44,13 +44,13 @@ pub struct WallSlamParams {
     pub external: ExternalParams,
     /// The antenna whose positions the log has, in the robot frame, m.
     pub antenna: [f64; 2],
-    /// Which scans are looked at.
+    /// Distance and rotation between keyframes, which are the scans that correct the map.
     pub keyframes: KeyframeThreshold,
-    /// What odometry and scans disagree by.
+    /// Noise of the difference between odometry and scans, per scan.
     pub odometry_noise_per_scan: OdometryNoisePerScan,
-    /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
+    /// Whether each scan is matched to the last keyframe, which measures the motion better than wheels do.
     pub match_scans: bool,
-    /// How that is done.
+    /// Parameters of scan matching.
     pub scan_match: ScanMatchParams,
     /// How walls are found in a scan.
     pub line_extraction: LineExtractionParams,
@@ -60,13 +60,13 @@ pub struct WallSlamParams {
     pub expected_walls: bool,
     /// How walls are seen.
     pub sensor: WallSensor,
-    /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
+    /// Prior standard deviation of the heading drift of odometry, rad/m; the drift is estimated.
     pub heading_drift_sigma: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_timeout: f64,
-    /// By how much odometry is stamped later than scans that show the same, s; negative where it is stamped earlier.
+    /// Delay of the odometry stamps relative to the scan stamps, s; negative for earlier odometry stamps.
     pub odometry_delay: f64,
-    /// Whether the motion of the laser during a scan is taken out, where the log says the time from beam to beam.
+    /// Whether scans are corrected for the motion of the laser, if the log has the time from beam to beam.
     pub deskew_scans: bool,
     /// Noise of odometry increments.
     pub increment_noise: OdometryMotion,
@@ -76,12 +76,12 @@ pub struct WallSlamParams {
     pub nearest_neighbour: NearestNeighbourParams,
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
-    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    /// Whether to record what the run observes; a command-line option, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
 }
 
-/// What odometry and scans disagree by at every scan, since their stamps do and wheels slip.
+/// Noise of the difference between odometry and scans at every scan: stamps differ and wheels slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OdometryNoisePerScan {
@@ -98,13 +98,13 @@ impl Default for OdometryNoisePerScan {
     }
 }
 
-/// How far a robot moves between two looks: a scan before that shows the same walls with the same errors once more, and is passed by.
+/// Motion between two keyframes. A scan in between shows the same walls with the same errors again and is skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyframeThreshold {
-    /// Way after which a scan is looked at, m.
+    /// Distance after which a scan becomes a keyframe, m.
     pub min_distance: f64,
-    /// Turn after which a scan is looked at, rad.
+    /// Rotation after which a scan becomes a keyframe, rad.
     pub min_rotation: f64,
 }
 

@@ -6,7 +6,7 @@ use wayfix_slam_ekf::{OdometryMotion, PoseWithHeadingDrift};
 
 use super::OdometryNoisePerScan;
 
-/// What odometry says of the way since the last scan, and how sure that is.
+/// The motion since the last scan by odometry, with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RelativeMotion {
     /// The motion, in the frame of the last scan's robot, with the drift that is estimated taken out.
@@ -104,16 +104,16 @@ impl RelativeMotion {
         Self { covariance: self.covariance * scale.max(1.0), ..self }
     }
 
-    /// The heading that the points of a match alone ask for, without odometry; `None` where they leave a direction open.
+    /// The heading by the points of a match alone, without odometry; `None` if they do not constrain a direction.
     pub(super) fn heading_from_match(&self, found: &ScanAlignment) -> Option<f64> {
         let asked = found.information.try_inverse()? * found.information_vector;
         let heading = self.motion.retract(&asked).heading();
         heading.is_finite().then_some(heading)
     }
 
-    /// What a match of two scans says of the drift: its change and the variance of that; `None` where it says nothing.
+    /// The correction of the drift by a match of two scans, and its variance; `None` if the match gives no information.
     ///
-    /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is what odometry errs beside the drift, with covariance $`Q`$.
+    /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is the error of odometry without the drift, with covariance $`Q`$.
     pub(super) fn drift_from_match(&self, found: &ScanAlignment) -> Option<(f64, f64)> {
         let gain = (Matrix3::identity() + found.information * self.covariance).try_inverse()?;
         let information = self.drift_jacobian.dot(&(gain * found.information * self.drift_jacobian));

@@ -13,13 +13,13 @@ use wayfix_system_core::{
 use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
 use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose};
 
-/// A log of scans that went through EKF-SLAM with walls.
+/// The result of EKF-SLAM with walls on a log of scans.
 pub type WallRun = SlamRun<WallSlamFrontEnd, Vec<TrueWall>>;
 
 /// Runs EKF-SLAM with walls over the records of a log and shows each step to `observe`.
 ///
-/// The start pose is the true pose at the first scan, or led back to it by odometry from the first true pose after it, else the origin.
-/// Nothing else ties the run to the truth.
+/// The start pose is the true pose at the first scan, or the first true pose after it, moved back by odometry; else the origin.
+/// The run uses the truth for nothing else.
 ///
 /// # Errors
 /// When there is no odometry, no scan, or a parameter is out of range.
@@ -47,7 +47,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
     };
-    // A log may tell of the same motion twice.
+    // A log may contain the same motion twice.
     let moves_by_velocity = first(|data| matches!(data, RecordData::OdometryIncrement(_))).is_none();
     if moves_by_velocity && first(|data| matches!(data, RecordData::Velocity(_))).is_none() {
         bail!(
@@ -126,7 +126,7 @@ fn drive_through<R: Borrow<Record>>(
     Ok(run)
 }
 
-/// Where the log says that the laser is first; the system follows a laser that moves.
+/// The first pose of the laser in the log; the system follows a laser that moves.
 fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
     records.iter().find_map(|record| match record.data {
         RecordData::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),

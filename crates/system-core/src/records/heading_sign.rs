@@ -23,7 +23,7 @@ impl Default for HeadingSignTest {
 }
 
 impl HeadingSignTest {
-    /// A test that goes on from the log odds of an earlier one; 0 is a new one.
+    /// A test that continues from the log odds of an earlier one; 0 is a new one.
     pub fn from_log_odds(log_odds: f64) -> Result<Self, IntegrityError> {
         Ok(Self(ProbabilityRatioTest::from_error_rate(ERROR_RATE)?.with_sum(log_odds)?))
     }

@@ -25,7 +25,7 @@ pub struct LogOverview {
     pub n_records: usize,
     /// Images of the log.
     pub n_images: usize,
-    /// How reading went.
+    /// The result of reading.
     pub read: ReadReport,
 }
 
@@ -89,7 +89,7 @@ impl LogOverview {
     }
 }
 
-/// Whether odometry tells of motion; `None` for other records.
+/// Whether odometry shows motion; `None` for other records.
 fn moves(data: &RecordData) -> Option<bool> {
     match data {
         RecordData::Velocity(velocity) => Some(velocity.linear != 0.0 || velocity.angular != 0.0),

@@ -66,7 +66,7 @@ impl CmlSystem {
         self.move_by(&if done > 0.0 { Pose2::exp(&(whole * (1.0 - done))) } else { *increment })
     }
 
-    /// Takes what still waits at the end of the log, and says if the compass was wrong.
+    /// Takes the remaining measurements at the end of the log, and reports a wrong compass.
     pub(super) fn finish_measurements(&mut self) {
         for (since, measurement) in std::mem::take(&mut self.external.waiting) {
             if let Err(reason) = self.correct(&measurement) {

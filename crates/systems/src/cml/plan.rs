@@ -135,7 +135,7 @@ impl CmlRunPlan {
         let truth = ReferencePath::from_records(&records);
         ensure!(
             truth.last_stamp().is_some(),
-            "nothing can be taught: the log has no true poses (without --withhold the map is built as the robot goes)"
+            "nothing can be taught: the log has no true poses (without --withhold the map is built during the run)"
         );
         let mut n_images = 0;
         for record in records {
@@ -254,12 +254,12 @@ fn choose_sense(
 fn describe_heading(heading: HeadingSource) -> &'static str {
     match heading {
         HeadingSource::Given => "headings are those of the table",
-        HeadingSource::AlongPath => "the table has no headings: the robot is taken to look along its path",
+        HeadingSource::AlongPath => "the table has no headings: the robot is assumed to face along its path",
         HeadingSource::Unknown => {
-            "the table has no headings, and the views turn otherwise than the path: their headings are not used, and a taught map stays as it is"
+            "the table has no headings, and the views do not turn with the path: their headings are not used, and a taught map stays as it is"
         }
         HeadingSource::Fixed => {
-            "the table has no headings, and the views do not turn: the camera is taken to look the same way always"
+            "the table has no headings, and the views do not turn: the camera is assumed to keep its heading"
         }
     }
 }

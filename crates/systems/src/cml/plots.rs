@@ -22,8 +22,12 @@ pub fn plots(run: &CmlRun) -> Result<Vec<SvgPlot>, PlotError> {
     let frames = run.system.frames();
     let distance = PlotSeries::new("nearest reference", frames.iter().filter_map(alike).collect());
     plots.push(
-        over_time("How much the most alike reference differs", "distance of the views", vec![distance])
-            .draw()?,
+        over_time(
+            "Descriptor distance of the most similar reference",
+            "distance of the views",
+            vec![distance],
+        )
+        .draw()?,
     );
     let count = |frame: &CmlViewResult| (run.seconds(frame), frame.n_references as f64);
     let references = PlotSeries::new("references", frames.iter().map(count).collect());

@@ -60,10 +60,8 @@ pub fn film<R: Borrow<Record>>(
     });
     let images: Vec<(f64, EncodedImage)> =
         images.enumerate().filter(|(number, _)| is_shown(*number)).map(|(_, image)| image).collect();
-    let mut film = FilmStrip {
-        title: "What the camera saw, and what it was classified as".to_owned(),
-        ..FilmStrip::default()
-    };
+    let mut film =
+        FilmStrip { title: "Camera images and their classification".to_owned(), ..FilmStrip::default() };
     let paints = paints(run.system.map());
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
     // Classifies with the light at the end of the log, so early frames may look wrong.
@@ -91,7 +89,7 @@ pub fn film<R: Borrow<Record>>(
 /// Display colour of what has no class.
 const BACKGROUND: [u8; 3] = [96, 96, 100];
 
-/// How each colour of the map looks: by its name, others by their order.
+/// The plotted colour of each colour of the map: by its name, others by their order.
 fn paints(map: &ColorMap) -> Vec<[u8; 3]> {
     const OTHERS: [[u8; 3]; 4] = [[40, 140, 60], [250, 210, 40], [245, 130, 30], [50, 70, 200]];
     let paint = |(k, name): (usize, &String)| named_color(name).unwrap_or(OTHERS[k % OTHERS.len()]);

@@ -85,7 +85,7 @@ fn consistency(system: &LineExtractionSystem) -> Option<ConsistencyPlot> {
     let samples: Vec<(f64, f64)> = scans.iter().flat_map(of_scan).collect();
     let band = ChiSquaredBand::for_average(LINE_DIMENSION, 1, 0.95).ok().filter(|_| !samples.is_empty())?;
     Some(ConsistencyPlot {
-        title: "Are the walls of up to 256 scans as sure as they should be?".to_owned(),
+        title: "Consistency of the walls of up to 256 scans".to_owned(),
         statistic: "NEES (ρ, α)".to_owned(),
         samples,
         expected: LINE_DIMENSION as f64,

@@ -46,9 +46,9 @@ fn coverage(n_true: usize, n_frames: usize) -> Option<String> {
     match n_true {
         0 => None,
         n if n < n_frames => {
-            Some(format!("The truth speaks of {n} of {n_frames} frames; the others are not judged."))
+            Some(format!("The truth covers {n} of {n_frames} frames; the others are not scored."))
         }
-        n if n > n_frames => Some(format!("The truth speaks of {n} frames and there are {n_frames}.")),
+        n if n > n_frames => Some(format!("The truth has {n} frames, but there are {n_frames}.")),
         _ => None,
     }
 }

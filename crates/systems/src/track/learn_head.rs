@@ -22,7 +22,7 @@ pub fn learn_head(
         RecordData::Image(image) => Some((record.stamp, image)),
         _ => None,
     });
-    // As in a run, the stamps of a folder tell the number of a frame.
+    // As in a run, the stamps of a folder give the number of a frame.
     let number = |count: usize, nanoseconds: u64| {
         rate_hz.map_or(count, |rate_hz| (nanoseconds as f64 * 1e-9 * rate_hz).round() as usize)
     };

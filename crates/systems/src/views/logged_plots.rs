@@ -26,7 +26,7 @@ pub fn logged_plots(run: &LoggedViews, feature: DescriptorKind) -> Result<Vec<Sv
         run.errors.kept().iter().map(|(frame, error)| (*frame as f64, *error as f64)).collect();
     if !errors.is_empty() {
         let plot = LinePlot {
-            title: "How far off the best place is".to_owned(),
+            title: "Error of the most probable place".to_owned(),
             x_label: "frame".to_owned(),
             y_label: "places".to_owned(),
             series: vec![PlotSeries::new(feature.title(), errors)],
@@ -58,7 +58,7 @@ fn beliefs(run: &LoggedViews) -> Result<Option<SvgPlot>> {
     let pixels: Vec<u8> = (0..width * height).flat_map(pixel).collect();
     let frame_size = (width as u32, height as u32);
     let image = EncodedImage::png_rgb(frame_size.0, frame_size.1, &pixels)?;
-    let legend = "frames to the right, places up; dark: believed, red: every tenth true one".to_owned();
+    let legend = "frames to the right, places up; dark: probable, red: every tenth true one".to_owned();
     let caption = format!("{n_frames} frames, {n_places} places");
     let title = "Belief along the drive".to_owned();
     let rows = vec![(legend, vec![FilmStripFrame { image, caption }])];

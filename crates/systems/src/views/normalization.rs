@@ -10,7 +10,7 @@ use super::{ViewsError, ViewsParams};
 pub enum LightNormalization {
     /// None: the views are used as they are.
     None,
-    /// By the statistics of the whole real scene, as in the paper; a robot that sees one view at a time does not have them.
+    /// By the statistics of the whole real scene, as in the paper; a robot with one view at a time does not have them.
     #[default]
     WholeScene,
     /// During the run: the light is estimated jointly with the place, from the views so far.

@@ -42,7 +42,7 @@ impl Default for ViewsParams {
 }
 
 impl ViewsParams {
-    /// The method of the paper: the light is normalized from the whole scene, and the robot is never carried off.
+    /// The method of the paper: the light is normalized from the whole scene, and there is no kidnapping.
     pub fn as_published() -> Self {
         Self {
             localizer: ViewLocalizerParams::as_published(),

@@ -74,7 +74,7 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<SvgPlot
     };
     let frames: Vec<FilmStripFrame> = maps.into_iter().map(frame).collect::<Result<_, ImageError>>()?;
     let legends =
-        ["red: true place, orange: best, green: goal", "dark: believed, by the logarithm to a millionth"];
+        ["red: true place, orange: best, green: goal", "dark: probable, by the logarithm to a millionth"];
     let rows =
         frames.chunks(FRAMES_A_ROW).zip(legends).map(|(frames, legend)| (legend.to_owned(), frames.to_vec()));
     let film = FilmStrip {
@@ -155,7 +155,7 @@ fn certainty(trials: &[ViewTrial]) -> LinePlot {
         (0..n_moves).map(of).collect()
     };
     LinePlot {
-        title: "How many drives believe in the true place".to_owned(),
+        title: "How many drives find the true place".to_owned(),
         x_label: "moves".to_owned(),
         y_label: "share of the drives".to_owned(),
         series: vec![

@@ -128,7 +128,7 @@ impl ColorContourTrackerParams {
     /// Returns [`TrackingError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), TrackingError> {
         let count = |what, n: usize, most: usize| {
-            checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not beyond measure")
+            checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not excessive")
         };
         count("n_samples", self.n_samples, 1_000_000)?;
         count("max_color_points", self.max_color_points, 1_000_000)?;

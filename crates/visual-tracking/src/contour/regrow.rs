@@ -3,7 +3,7 @@ use super::{
 };
 use crate::{PixelMask, TrackingError};
 
-/// Support and overlap from which on a larger contour is beyond doubt.
+/// Least support and overlap of a certain larger contour.
 const BEYOND_DOUBT: f64 = 0.9;
 
 /// Maximum ratio of the new to the expected area.

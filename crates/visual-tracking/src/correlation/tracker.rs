@@ -32,7 +32,7 @@ const TYPICAL_RATE: f64 = 0.05;
 /// the previous one [Galoogahi et al. 2017; Li et al. 2018]. $`p(c)`$ is the ratio of the colour histograms of target and surroundings [Bertinetto
 /// et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017].
 ///
-/// Every result with a distinct peak is learned. The last filter that recognized the target beyond doubt is kept: after an occluder was learned,
+/// Every result with a distinct peak is learned. The last filter that recognized the target with certainty is kept: after an occluder was learned,
 /// the kept filter finds the target where it reappears. A result is not learned if the kept filter does not recognize it and its colours
 /// differ. The target is [`Lost`](TrackStatus::Lost) if such a result has no distinct peak, or if no result has one for some images. The tracker then
 /// searches the whole image, upright and rotated, and requires agreement of shape and colours.
@@ -71,7 +71,7 @@ pub struct CorrelationTracker {
     pub(super) current: Spectrum,
     /// The window at the last learning step.
     pub(super) learned: Patch,
-    /// The filter at the last recognition beyond doubt.
+    /// The filter at the last certain recognition.
     pub(super) trusted: Spectrum,
     /// Pictures since then.
     pub(super) n_untrusted: usize,

@@ -12,8 +12,8 @@ const N_PARTS: usize = 3;
 
 /// Log-likelihood ratios of the head against its surroundings, for each colour in each part and for each level of the gradient across the rim.
 ///
-/// A cue that does not tell the head from its surroundings has ratios near 0, so no weights are needed. One pixel of the smaller sample, or one
-/// point of a rim, is added to every share, so what was never seen says nothing.
+/// A cue that does not distinguish the head from its surroundings has ratios near 0, so no weights are needed. One pixel of the smaller sample, or one
+/// point of a rim, is added to every share, so unseen values have no effect.
 #[derive(Clone, Debug)]
 pub(super) struct CueRatios {
     /// Share of each colour in each part of the head.

@@ -18,7 +18,7 @@ pub struct HeadTrackerParams {
     pub search_radius: f64,
     /// Factor between the three sizes that are compared. Default 1.04.
     pub scale_step: f64,
-    /// Fixed weight of the gradient across the rim beside that of the colours; `None` weighs both by how well they told the head from its
+    /// Fixed weight of the gradient across the rim beside that of the colours; `None` weighs both by how well they distinguished the head from its
     /// surroundings in the last picture. Default `None`.
     pub gradient_weight: Option<f64>,
     /// Rate $`a`$ at which the colours adapt. [Andrade-Cetto 2005, Eq. 29] Default 0.1.

@@ -31,8 +31,8 @@ const N_OUTLINE: usize = 48;
 ///
 /// with the colour distributions $`M`$ of the head and $`R`$ of the ring of equal area around it, and the distributions $`H`$ and $`S`$ of the
 /// gradient across its rim and across displaced rims. $`M`$ and $`R`$ are those of the upper, middle or lower third of the head that holds $`p`$: without
-/// the place of its colours a histogram does not tell the size. All are measured in the last picture; the highest sum wins. $`M`$ and $`H`$
-/// adapt [Andrade-Cetto 2005, Eq. 29] where that sum is positive. The histogram intersection [Andrade-Cetto 2005, Eq. 28] tells a lost head. The size
+/// the place of its colours a histogram does not give the size. All are measured in the last picture; the highest sum wins. $`M`$ and $`H`$
+/// adapt [Andrade-Cetto 2005, Eq. 29] where that sum is positive. The histogram intersection [Andrade-Cetto 2005, Eq. 28] detects a lost head. The size
 /// comes from a [`RelativeHeadSizeSource`] or from the search.
 ///
 /// With a fixed [`gradient_weight`](HeadTrackerParams::gradient_weight), intersection and mean gradient are scaled to their ranges and added, as
@@ -107,7 +107,7 @@ impl HeadTracker {
                 (BimodalHistogram::new(&quantizer, &own, params.bimodal_colors)?, None)
             }
             None => {
-                // The ratios leave out the colours of the surroundings, and a colour's share tells its weight.
+                // The ratios leave out the colours of the surroundings, and a colour's share gives its weight.
                 let model = BimodalHistogram::new(&quantizer, histogram.counts(), false)?;
                 let field = GradientField::new(picture);
                 let ratios = CueRatios::measured((&bins, &field), (center, base), None)?;

@@ -5,7 +5,7 @@ use crate::{RgbImage, TargetEstimate, TrackStatus, Tracker, TrackingError};
 
 /// A tracker whose camera follows the target.
 ///
-/// A lost target leaves the head where it is. A head that does not answer is counted; the tracker goes on without it.
+/// The head stops while the target is lost. A head that does not answer is counted; the tracker continues without it.
 ///
 /// ```
 /// use rand::SeedableRng;

@@ -19,7 +19,7 @@ pub(super) struct Common {
     /// Write no MCAP of the estimates to --out.
     #[arg(long, requires = "out")]
     pub(super) no_mcap: bool,
-    /// Write the estimates without the records of the log, for those who have the log.
+    /// Write the estimates without the records of the log.
     #[arg(long)]
     pub(super) no_echo: bool,
     /// Print one JSON object instead of a table.

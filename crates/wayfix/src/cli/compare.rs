@@ -10,9 +10,9 @@ use wayfix_evaluation::{
     terminal::print,
 };
 
-/// Compare two reports: the figures of B with those of A beside them.
+/// Compare two reports: the figures of B next to those of A.
 ///
-/// Runs are matched by name; two reports of one run each are compared whatever its name. Figures that only one report has are left out, and
+/// Runs are matched by name; two reports with one run each are compared even if the names differ. Figures in only one report are skipped and
 /// counted.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     a: PathBuf,
     /// The report whose figures are judged.
     b: PathBuf,
-    /// Show the figures that are equal too.
+    /// Show equal figures too.
     #[arg(long)]
     all: bool,
     /// Folder for a page with the same comparison.

@@ -11,7 +11,7 @@ use super::input::{Topics, log_format};
 /// A ROS 2 bag becomes MCAP with Foxglove's schemas; one topic of each kind of record is converted (`--topic`).
 ///
 /// MCAP stores everything, including the origin of the records; Foxglove and Rerun open it. Records that another format cannot store are skipped and
-/// counted: range-bearing text has no stamps, velocities and scans, TUM has only poses.
+/// counted: range-bearing text has no stamps, velocities and scans; TUM has only poses.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     /// Output format: mcap, range-bearing or tum [default: from the file extension].
     #[arg(long, value_name = "FORMAT", value_parser = log_format(), hide_possible_values = true)]
     to: Option<LogFormat>,
-    /// Which robot, in sets of several.
+    /// Number of the robot, for sets with several robots.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
     #[command(flatten)]

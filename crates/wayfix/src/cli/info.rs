@@ -15,7 +15,7 @@ pub(super) struct Arguments {
     /// Input format [default: detected from the content].
     #[arg(long, value_parser = log_format())]
     format: Option<LogFormat>,
-    /// Which robot, in sets of several.
+    /// Number of the robot, for sets with several robots.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
     #[command(flatten)]

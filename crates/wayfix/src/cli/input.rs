@@ -6,7 +6,7 @@ use wayfix_sensor_log::{LogFormat, read_text};
 
 use super::renamed::{present_name, replacement};
 
-/// A format of a log by its name; a mistyped one is told the most similar.
+/// A format of a log by its name; for a mistyped name the error gives the most similar one.
 pub(super) fn log_format() -> impl TypedValueParser<Value = LogFormat> {
     PossibleValuesParser::new(LogFormat::ALL.map(LogFormat::name)).try_map(|name| name.parse::<LogFormat>())
 }

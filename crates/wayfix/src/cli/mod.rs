@@ -31,12 +31,12 @@ use clap::{CommandFactory, Parser, Subcommand};
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
 ///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
-///   wayfix run views --scene china.jpg             which view of a scene a camera sees, in other light
+///   wayfix run views --scene china.jpg             the view of a camera in a known scene, in other light
 ///   wayfix run track --frames David/img --init 129,80,64,78
 ///                                                 a target in every image, from its box in the first
 ///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
-///   wayfix optimize manhattan.g2o.gz              poses that fit the measurements of a pose graph best
+///   wayfix optimize manhattan.g2o.gz              the best poses of a pose graph
 ///   wayfix learn-priors --images DIR --labels DIR --out priors.json
 ///                                                 colours from labelled images, for run color
 ///   wayfix compare results other-results           figures of two reports side by side
@@ -62,7 +62,7 @@ enum Command {
     Doctor(help::doctor::Arguments),
     Completions(help::completions::Arguments),
     Manual(help::manual::Arguments),
-    /// Make pictures to try a system on.
+    /// Make simulated images to try a system on.
     #[command(subcommand)]
     Simulate(simulate::Command),
 }
@@ -117,7 +117,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// An error with its causes; those that its text already ends with are not said again.
+/// An error with its causes; causes that its text already ends with are not repeated.
 fn with_causes(error: &anyhow::Error) -> String {
     error.chain().skip(1).fold(error.to_string(), |text, cause| {
         let cause = cause.to_string();

@@ -23,7 +23,7 @@ use wayfix_system_core::Stopwatch;
 /// Optimize a pose graph in the format of g2o: the poses that fit the measurements best.
 ///
 /// The cost is Σ eᵀΩe over all edges, with e the logarithm in SE(2) or SE(3) of the difference between measurement and poses, and Ω the
-/// information matrix of the edge. Where the model is right, it is about the number of rows of all edges minus that of all poses.
+/// information matrix of the edge. If the model is right, it is about the number of residuals of all edges minus the number of unknowns.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -38,19 +38,20 @@ pub(super) struct Arguments {
     /// Print one JSON object instead of a table: `{"metrics": {name: number}, "events": {name: count}, "seed": n}`.
     #[arg(long)]
     json: bool,
-    /// Where to start: at the poses of the file, or at a linear solution for rotations and then positions, which a bad start cannot mislead.
+    /// Start of the optimization: the poses of the file, or a linear solution for rotations and then positions, which does not depend on them.
     #[arg(long, value_enum, default_value_t = Start::Linear)]
     start: Start,
-    /// How to take a step.
+    /// Method of the optimization steps.
     #[arg(long, value_enum, default_value_t = StepMethod::LevenbergMarquardt)]
     method: StepMethod,
-    /// Limit the weight of loop closures that fit worse than 99 % of right ones do: of edges between poses that do not follow each other.
+    /// Robust kernel: limits the weight of loop closures with a larger residual than 99 % of correct ones. Loop closures are edges between
+    /// poses that do not follow each other.
     #[arg(long, value_enum)]
     kernel: Option<KernelName>,
-    /// Most iterations.
+    /// Maximum number of iterations.
     #[arg(long, value_name = "N", default_value_t = Params::default().max_iterations)]
     max_iterations: usize,
-    /// A vertex that stays, beside those of FIX lines; may be repeated [default: the first pose, if the file fixes none].
+    /// A fixed vertex, in addition to those of FIX lines; may be repeated [default: the first pose, if the file fixes none].
     #[arg(long, value_name = "ID")]
     fix: Vec<u64>,
     /// Set negative eigenvalues of information matrices to 0 instead of refusing them.

@@ -227,7 +227,7 @@ pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>
 const REPLACED: [(&str, &str, &str); 14] = [
     ("doubtful_fit", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("fast_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
-    ("lost_fit", "relocalization", "a pose is lost if the last frames do not tell it from the background"),
+    ("lost_fit", "relocalization", "a pose is lost if the last frames do not support it over the background"),
     ("resample_below", "relocalization", "every frame resamples"),
     ("slow_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("delay", "unimodal_min_weight", "a view waits until the robot is a match radius away"),

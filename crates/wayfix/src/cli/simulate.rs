@@ -12,7 +12,7 @@ use wayfix_scene_sim::{
     scenery::{ImagingConditions, RgbPicture, Scenery},
 };
 
-/// Make images to try a system on, if there are no recordings.
+/// Make simulated images to try a system on.
 ///
 /// Logs with a laser, wheels, a camera or panoramas are in the folder `fixtures` of the repository.
 #[derive(clap::Subcommand)]
@@ -39,7 +39,7 @@ pub(super) enum Command {
     },
     /// A large image and the same scene on another day, for `run views`: learned.png and real.png.
     Scene {
-        /// Which one, after the paper's scenes of these names.
+        /// The scene, named after those of the paper.
         #[arg(value_parser = PossibleValuesParser::new(Scenery::ALL.map(|scene| scene.name)))]
         name: String,
         /// Folder for `learned.png` and `real.png`.

@@ -14,7 +14,7 @@ use super::{
     sink::{Clock, LiveSink},
 };
 
-/// Who loads the page of a viewer again is back within this time.
+/// A viewer that reloads its page reconnects within this time.
 const GRACE: Duration = Duration::from_secs(2);
 
 /// A WebSocket on which Foxglove, and other programs with its protocol, show a run live.

@@ -5,7 +5,7 @@ use wayfix_gaussian_core::Gaussian;
 use super::super::PlaceComponent;
 use crate::ReferenceMatch;
 
-/// A place whose reference matches the view, and the pose that it tells.
+/// A place whose reference matches the view, and the pose that it gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceMatch {
     /// The reference, and its difference from the view.

@@ -17,7 +17,7 @@ impl<D> Default for ScaleLearner<D> {
 }
 
 impl<D: ViewDescriptor + Clone> ScaleLearner<D> {
-    /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest tells nothing of the scale.
+    /// Adds a view at a distance of `distance` metres from the previous one. A robot at rest gives no information about the scale.
     pub(crate) fn observe(&mut self, distance: f64, view: &D, scale: &mut ViewDifferenceModel) {
         if distance <= scale.step() / 2.0 && !self.recent.is_empty() {
             return;

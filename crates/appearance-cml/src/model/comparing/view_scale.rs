@@ -165,7 +165,7 @@ impl ViewDifferenceModel {
         let (ahead_lag, ahead) =
             (median(self.ahead.iter().map(|s| s.lag)), median(self.ahead.iter().map(|s| s.distance)));
         let rise = (ahead * ahead - near * near) / (ahead_lag - step);
-        // Without lags to tell, all of the distance of successive views comes from the way.
+        // Without different lags, all of the descriptor distance of successive views comes from the motion.
         let slope = if rise.is_finite() && rise > 0.0 { rise } else { near * near / step };
         let nugget = (near * near - slope * step).max(0.0);
         let sill = if self.is_sill_known() {

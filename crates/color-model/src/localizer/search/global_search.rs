@@ -40,7 +40,7 @@ const STEP_FACTORS: [f64; 2] = [3.0, -0.5];
 /// Under an unknown light some false place explains a single frame better than the true one. The light is common to all frames, so whole trajectories
 /// are weighed by all frames under one light. The likelihood is narrow: trajectories are drawn in every cell of its width and where detected landmarks fit, then moved
 /// along one axis after the other [Rosenbrock 1960], while the worse ones are dropped again and again [Li et al. 2018]. A place has several peaks, and keeps a trajectory at each
-/// until the end: the one that led at first need not be the highest.
+/// until the end: the highest one at first need not be the highest at the end.
 pub(crate) struct Search<'a, T> {
     evidence: Evidence<'a, T>,
     area: &'a Area,
@@ -118,7 +118,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             candidates = self.each(candidates, rng, |scratch, candidate, rng| {
                 self.evidence.fit(scratch, candidate, effort, true);
                 if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
-                    return; // The filter knows it from all frames: some of them would lead it away.
+                    return; // The filter estimates it from all frames: a part of them would give a wrong pose.
                 }
                 candidate.steps = Steps::new(first_pose_step(round), self.evidence.frames.len());
                 for at in 0..(params.n_first_round_moves as usize) << round {
@@ -161,7 +161,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         })
     }
 
-    /// A place that a filter knows.
+    /// A place that a filter tracks.
     fn known(&self, location: &CameraLocation) -> Candidate {
         let Evidence { params, frames, .. } = &self.evidence;
         let trajectory = Trajectory::through(&location.body, frames.len(), frames)

@@ -47,7 +47,7 @@ impl Trajectory {
         Self { newest: self.newest.retract(step), ..self.clone() }
     }
 
-    /// Changes the camera's errors at all frames alike by a `step` along an `axis`: a mount that is off for good.
+    /// Changes the camera's errors at all frames alike by a `step` along an `axis`: a constant error of the mount.
     pub(crate) fn with_mount_off(&self, axis: usize, step: f64) -> Self {
         let mut changed = self.clone();
         changed.errors.iter_mut().for_each(|(_, camera)| camera[axis] += step);

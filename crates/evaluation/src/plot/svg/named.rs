@@ -1,4 +1,4 @@
-/// A colour with a name: how it looks in a picture, and its inks on a light and on a dark page, each at least 4.5 : 1 against the paper.
+/// A colour with a name: its value in a picture, and its inks on a light and on a dark page, each at least 4.5 : 1 against the paper.
 struct NamedColor {
     names: &'static [&'static str],
     rgb: [u8; 3],
@@ -44,7 +44,7 @@ pub(crate) fn named_palette(is_dark: bool) -> String {
     COLORS.iter().map(property).collect()
 }
 
-/// How a colour looks that is called by a common English name; `None` for other names.
+/// The colour with a common English name; `None` for other names.
 /// ```
 /// use wayfix_evaluation::plot::named_color;
 /// assert_eq!(named_color("White"), Some([245, 245, 245]));

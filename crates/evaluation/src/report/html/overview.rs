@@ -3,7 +3,7 @@ use super::super::{FullReport, Metric, PassFailCount, ReportRun, ReportSuite};
 use super::{anchor, number_cell, table};
 use crate::plot::escape;
 
-/// Verdict, origin and contents. A run of one's own log has neither bounds nor a revision: what was found and doubted stands there instead.
+/// Verdict, origin and contents. A run of a user's log has neither bounds nor a revision: results and warnings stand there instead.
 pub(super) fn header(report: &FullReport) -> String {
     let seconds: f64 = report.runs().map(|(_, run)| run.seconds).sum();
     let revision =
@@ -65,14 +65,14 @@ fn verdict(report: &FullReport) -> String {
     text
 }
 
-/// What runs without bounds found and what is doubtful.
+/// Results and warnings of runs without bounds.
 fn found(report: &FullReport) -> String {
     let n_doubts: usize = report.runs().map(|(_, run)| run.warnings.len()).sum();
     let n_figures: usize = report.runs().map(|(_, run)| run.all_metrics().count()).sum();
     match n_doubts {
         0 => format!("{n_figures} figures, no warnings"),
-        1 => format!("{n_figures} figures; a warning says what is doubtful"),
-        n => format!("{n_figures} figures; {n} warnings say what is doubtful"),
+        1 => format!("{n_figures} figures; 1 warning about doubtful results"),
+        n => format!("{n_figures} figures; {n} warnings about doubtful results"),
     }
 }
 

@@ -57,7 +57,7 @@ enum Experiment {
     Switching,
     /// Global localization, in many halls.
     GlobalStart,
-    /// Carried away, in many halls.
+    /// Relocalization after a kidnapping, in many halls.
     Kidnapped,
     /// The drive of the log in random halls.
     OtherHallsDark,

@@ -97,7 +97,7 @@ fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: No
 
 fn report(all: &ConsistencyMonteCarlo) -> Result<ReportRun> {
     let note = format!(
-        "{} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
+        "{} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one scan, and in {:.2} to {:.2} at all scans, with 95 %.",
         all.n_runs, all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
     );
     let figures = vec![consistency::picture(all)?];

@@ -17,7 +17,7 @@ const NOSE_M: [f64; 3] = [0.08, 0.0, 0.03];
 /// Correlation time of the slow part of the sway, seconds.
 const UNSTEADY_S: f64 = 1.0;
 
-/// A four-legged robot that walks and looks around, simulated in steps of a millisecond.
+/// A four-legged robot that walks and turns its camera, simulated in steps of a millisecond.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
@@ -48,7 +48,7 @@ pub struct LeggedRobot {
 const STEP_S: f64 = 1e-3;
 
 impl LeggedRobot {
-    /// A robot at rest at `start`, or at a random pose; it looks at `landmarks`.
+    /// A robot at rest at `start`, or at a random pose; its camera points at `landmarks`.
     /// # Errors
     /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
     pub fn new(

@@ -143,8 +143,8 @@ impl LeggedRobotParams {
         check::not_negative("slow roll and pitch (rad)", sway.tilt_error_sigma_rad)?;
         check::positive("speed of the head (rad/s)", head.speed_radps)?;
         check::not_negative("furthest pan (rad)", head.pan_limit_rad)?;
-        check::not_negative("length of a look (s)", head.mean_gaze_duration_s)?;
-        check::share("looks at the carpet", head.downward_gaze_share)?;
+        check::not_negative("mean duration of a gaze (s)", head.mean_gaze_duration_s)?;
+        check::share("share of downward gazes", head.downward_gaze_share)?;
         check::not_negative("resolution of the joints (rad)", head.angle_resolution_rad)?;
         check::not_negative("latency of the angles (s)", head.angle_latency_s)?;
         check::not_negative("error of the joints (rad)", head.angle_bias_sigma_rad)?;

@@ -4,7 +4,7 @@ use super::{Clutter, CorrelatedErrorParams};
 use crate::random::NoiseShape;
 use crate::{SimulationError, check};
 
-/// Everything about a range-bearing sensor. The default is honest: Gaussian noise of the shared range-bearing logs, no sins.
+/// Parameters of a range-bearing sensor. The default has the Gaussian noise of the shared range-bearing logs and no other errors.
 ///
 /// ```
 /// use wayfix_scene_sim::sensor::RangeBearingParams;
@@ -33,7 +33,7 @@ pub struct RangeBearingParams {
     pub range_scale: f64,
     /// Added to every bearing, radians. Default 0.
     pub bearing_bias_rad: f64,
-    /// Errors that hang together in time. Default none.
+    /// Errors that are correlated in time. Default none.
     pub drift: CorrelatedErrorParams,
     /// Delay of the stamp, milliseconds. Default 0.
     pub stamp_delay_ms: u32,
@@ -103,7 +103,7 @@ impl RangeBearingParams {
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimulationError> {
-        check::period("period of the looks (ms)", self.period_ms)?;
+        check::period("period of the scans (ms)", self.period_ms)?;
         check::not_negative("nearest range (m)", self.min_range_m)?;
         check::above(
             "farthest range (m)",

@@ -4,7 +4,7 @@ use crate::{Record, Stamp};
 
 /// Larger backward steps mean that the clock was set, s; smaller ones are messages out of order.
 const CLOCK_WAS_SET: f64 = 1.0;
-/// No recording pauses for longer, seconds: a stamp further ahead is wrong, unless the next ones go on from there.
+/// No recording pauses for longer, seconds: a stamp further ahead is wrong, unless the next ones continue from there.
 const LONGEST_PAUSE: f64 = 86_400.0;
 /// Number of successive stamps that confirm a clock that was set, as opposed to single wrong stamps.
 const IN_A_ROW: usize = 10;

@@ -192,7 +192,7 @@ impl<S: FoxgloveMessageSink> FoxgloveMessageWriter<S> {
         self.message(topic, stamp, &camera::encode_image(encode::timestamp(stamp)?, image))
     }
 
-    /// Completes the file with its index, or whatever else the messages went into.
+    /// Completes the file with its index, or any other sink of the messages.
     ///
     /// # Errors
     /// Returns an error if the output fails.

@@ -128,7 +128,7 @@ impl CarmenLog {
                 self.clock.was_set_back(*nanoseconds);
                 let seconds = *nanoseconds as f64 * 1e-9;
                 let text = format!(
-                    "{}: the clock is set back by {seconds:.3} s at line {line}: the stamps from there on are moved so that the time goes on",
+                    "{}: the clock is set back by {seconds:.3} s at line {line}: later stamps are shifted so that time continues",
                     self.file
                 );
                 report.warn("clock_set_back", text);

@@ -162,5 +162,5 @@ fn a_refused_correction_changes_no_value() {
     assert!(refused.is_none());
     twins.compare("after a refusal");
     twins.look(0, 3, true);
-    twins.compare("after the look that followed");
+    twins.compare("after the next scan");
 }

@@ -6,7 +6,7 @@ use wayfix_estimation_traits::{
 /// A sensor that measures after a motion which the state does not include yet: $`h(x ∘ u)`$, with noise $`R + H Q H^T`$.
 ///
 /// A filter that stays at the last keyframe takes measurements between keyframes with it. The error of the motion counts here and once more when
-/// the state makes the motion, which errs on the side of too large a covariance.
+/// the state makes the motion, which gives a covariance that is rather too large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedSensor<S> {
     /// The sensor.

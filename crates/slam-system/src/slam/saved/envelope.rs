@@ -5,7 +5,7 @@ const MAGIC: [u8; 8] = *b"WAYFIXSM";
 const VERSION: u32 = 5;
 const HEADER: usize = 24;
 
-/// The payload with a header before it that tells what it is and whether it is whole.
+/// The payload after a header with its kind and its checksum.
 pub(super) fn seal(payload: &[u8]) -> Vec<u8> {
     let mut sealed = Vec::with_capacity(HEADER + payload.len());
     sealed.extend(MAGIC);
@@ -40,7 +40,7 @@ pub(super) fn open(sealed: &[u8]) -> Result<&[u8], SavedMapError> {
     Ok(payload)
 }
 
-/// Over version and length as well: a version that was flipped into another known one must not be believed.
+/// Over version and length as well: a bit error that gives another known version must be detected.
 fn checksum(header: &[u8], payload: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&header[MAGIC.len()..]);

@@ -11,7 +11,7 @@ pub enum SavedMapError {
     Io {
         /// What was read or written.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// It does not begin as saved maps do.
@@ -25,10 +25,10 @@ pub enum SavedMapError {
         /// The version that can be read.
         known: u32,
     },
-    /// It ends too early, or goes on after its end.
+    /// It ends too early, or has bytes after its end.
     #[error("damaged: {found} bytes in place of {expected}")]
     Length {
-        /// What the header says, or needs at least.
+        /// The number in the header, or the least number.
         expected: u64,
         /// What is there.
         found: u64,

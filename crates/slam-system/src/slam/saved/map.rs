@@ -10,7 +10,7 @@ use crate::slam::{AssociationRule, ExternalState, FrontEndState};
 
 /// All that a [`SlamSystem`](crate::slam::SlamSystem) remembers between two records, in a file.
 ///
-/// Noise, gates and timing are not in it: they are parameters of the robot, so that a robot can go on with better ones. The kind of robot and
+/// Noise, gates and timing are not in it: they are parameters of the robot, so that a robot can continue with better ones. The kind of robot and
 /// landmarks and the rule of association must be the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlamState<R, L, S> {
@@ -76,7 +76,7 @@ where
     /// The bytes of the file.
     ///
     /// # Errors
-    /// When the encoder refuses, which it does not for want of anything but memory.
+    /// Returns an error if the encoder fails; it fails only without memory.
     pub fn to_bytes(&self) -> Result<Vec<u8>, SavedMapError> {
         let kind = postcard::to_stdvec(&Kind::of::<S>()).map_err(SavedMapError::Payload)?;
         let payload = postcard::to_extend(self, kind).map_err(SavedMapError::Payload)?;

@@ -3,7 +3,7 @@ use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 use super::super::ViewsError;
 
-/// A composed scene as it is learned, and as it looks on a later visit.
+/// A composed scene when it is learned, and on a later visit.
 ///
 /// # Errors
 /// Returns [`ViewsError::Scenery`] if the visit has an invalid camera.

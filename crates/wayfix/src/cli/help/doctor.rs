@@ -7,9 +7,9 @@ use std::{
 use anyhow::Result;
 use wayfix_evaluation::{report::MachineInfo, terminal::print};
 
-/// Show which optional parts are there: features of this program, recordings, other programs.
+/// Show which optional parts are available: features of this program, recordings, other programs.
 ///
-/// Nothing here is required; each missing part says what it is for.
+/// No part is required. For each missing part, the output gives its purpose.
 #[derive(clap::Args)]
 pub(in crate::cli) struct Arguments {}
 

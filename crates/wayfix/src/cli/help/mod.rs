@@ -1,4 +1,4 @@
-//! What helps to use the program: completions, manual pages, what of the optional parts is there.
+//! Help for the use of the program: completions, manual pages, available optional parts.
 
 pub(super) mod completions;
 pub(super) mod doctor;

@@ -19,14 +19,15 @@ use super::{
 
 /// Learn priors of the colours, for `run color --priors`, from your own labelled images.
 ///
-/// The labels of K.jpg are K_labels.png, or K.png in another folder: an eight-bit grey PNG of the same size, whose pixels are 0 where the map shows nothing and else
-/// the number of their colour in the map, from 1 on. Pixels next to another label are left out, and pixels that differ from the rest of their colour, as a ball on the carpet.
+/// The labels of K.jpg are K_labels.png, or K.png in another folder: an eight-bit grey PNG of the same size. A label is the number of the colour in
+/// the map, from 1 on, or 0 for a pixel of no map colour. Two kinds of pixels are skipped: those next to another label, and those that differ from
+/// the rest of their colour, for example a ball on the carpet.
 ///
-/// A venue is a place with its light: its images share a mean of each colour. Several venues teach how colours change together when the light changes, so that
-/// a robot that sees the carpet knows what pink looks like; one venue is enough, and a broad spread is assumed then. Priors of several kinds of light,
-/// as sun and lamps, are one Gaussian each.
+/// A venue is a place with its light: its images share a mean of each colour. Several venues show how colours change together when the light changes:
+/// the colour of the carpet then predicts that of pink. One venue is enough; the command then assumes a broad spread. Each kind of light, for example
+/// sun and lamps, has a Gaussian of its own.
 ///
-/// Beside the priors it writes a picture of the colours in the UV plane, with the ending .svg.
+/// The command also writes a picture of the colours in the UV plane, with the ending .svg.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
@@ -36,7 +37,7 @@ pub(in crate::cli) struct Arguments {
     /// Folder of their labels; it may be the same.
     #[arg(long, value_name = "DIR")]
     labels: PathBuf,
-    /// The venue of each image: a CSV file whose first line is `image,venue` or `image,venue,light`; images that are not in it are left out [default: all images
+    /// The venue of each image: a CSV file with the first line `image,venue` or `image,venue,light`. Images that are not in it are skipped [default: all images
     /// are one venue].
     #[arg(long, value_name = "CSV")]
     groups: Option<PathBuf>,
@@ -46,7 +47,7 @@ pub(in crate::cli) struct Arguments {
     /// Number of kinds of light into which the venues are split by their brightness, if the CSV file does not name them.
     #[arg(long, value_name = "N", default_value_t = 1)]
     lights: usize,
-    /// The parameters of `run color` that the priors are for; `yuv_standard` counts.
+    /// The parameters of `run color` for which the priors are made; only `yuv_standard` is used.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// The priors, as JSON.

@@ -62,7 +62,7 @@ pub(super) fn losses(colors: &[String], images: &[LabelledPixels], min_pixels: u
     notes
 }
 
-/// What these venues cannot tell, and what is assumed instead.
+/// What these venues do not determine, and what is assumed instead.
 pub(super) fn assumptions(
     venues: &[TrainingVenue],
     lights: &[usize],

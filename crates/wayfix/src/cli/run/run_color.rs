@@ -50,7 +50,7 @@ pub(in crate::cli) struct Arguments {
     /// any camera [default: these colours in simulated halls, dark and bright].
     #[arg(long, value_name = "FILE|broad")]
     priors: Option<PriorsArgument>,
-    /// Write the built-in priors to a file, and end: the form of one's own.
+    /// Write the built-in priors to a file and exit: a template for your own.
     #[arg(long, value_name = "FILE")]
     write_priors: Option<PathBuf>,
     /// Start pose at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else

@@ -22,7 +22,7 @@ pub(in crate::cli) enum SlamLogFormat {
     Plaza,
 }
 
-/// Such a format by its name; a mistyped one is told the most similar.
+/// Such a format by its name; for a mistyped name the error gives the most similar one.
 pub(in crate::cli) fn slam_log_format() -> impl TypedValueParser<Value = SlamLogFormat> {
     let names = LogFormat::ALL.map(LogFormat::name).into_iter().chain([PLAZA]);
     PossibleValuesParser::new(names).try_map(|name| match name.as_str() {

@@ -33,71 +33,70 @@ use super::{
 };
 use crate::commented::commented;
 
-/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
+/// EKF-SLAM: the path of the robot and a map of landmarks, from odometry and range-bearing detections or laser scans.
 ///
-/// Where the log holds true poses, the run starts at the true pose where odometry starts, and the figures tell how far it strays:
-/// `ate_rmse_m` as it is, `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean`
-/// how sure the filter is (3 when it is honest; far above: too sure of itself). Without truth these figures are absent.
+/// If the log has true poses, the run starts at the true pose where odometry starts, and the figures include the errors. `ate_rmse_m` is the RMS
+/// position error, `ate_aligned_rmse_m` the same after the best rigid fit of the path; `landmark_…` are those of the map. `nees_mean` is 3 for a
+/// consistent filter, and far above 3 for an overconfident one. Without truth these figures are absent.
 ///
-/// `n_rejected` counts what the filter refused: outside the gate, twice in one look, not usable, back in time. `step_…_us` is computing
-/// time a look of the sensor.
+/// `n_rejected` counts rejected measurements: outside the gate, repeated in one scan, unusable, or back in time. `step_…_us` is the computing time
+/// of one scan.
 ///
-/// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` with the log shows them). What another program
-/// estimated stands in for the truth there, when the log has no true poses. Where a ROS 2 bag has the transform from the robot to its laser, the laser is
-/// there, unless the parameters place it. `--relations` adds the errors of known relations.
+/// In logs of laser scans the landmarks are walls, and the parameters are different (`--print-params` with the log shows them). If such a log has no
+/// true poses, the estimates of another program in the log replace them. A ROS 2 bag gives the pose of the laser by its transforms, unless the
+/// parameters set it. `--relations` adds the errors of known relations.
 ///
-/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
-/// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
+/// Unusable records are skipped, counted in the events and listed on standard error; the run continues.
+/// The exit code is 1 if nothing could be estimated, 2 if the command line is wrong.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
     /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
     ///
-    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    /// Repeat it for the MCAP files of one recording; for a split ROS 2 bag give the folder.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(in crate::cli) log: Vec<PathBuf>,
-    /// How the log is stored [default: detected from the content].
+    /// Input format [default: detected from the content].
     #[arg(long, value_parser = run_ranges::slam_log_format())]
     pub(in crate::cli) format: Option<SlamLogFormat>,
-    /// What estimates: a filter, or least squares over all poses of a window.
+    /// The estimator: a filter, or least squares over all poses of a window.
     #[arg(long, value_enum, value_name = "NAME", default_value = "ekf")]
     pub(in crate::cli) estimator: EstimatorName,
-    /// Which robot, in sets of several.
+    /// Number of the robot, for sets with several robots.
     #[arg(long, value_name = "N")]
     pub(in crate::cli) robot: Option<u32>,
     #[command(flatten)]
     pub(in crate::cli) topics: Topics,
     #[command(flatten)]
     pub(in crate::cli) truth: TruthFile,
-    /// How detections find their landmarks [default: known where the log has identities, else jcbb].
+    /// Association of detections with landmarks [default: known where the log has identities, else jcbb].
     #[arg(long, value_name = "RULE")]
     pub(in crate::cli) association: Option<AssociationRule>,
-    /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
+    /// Robot profile: the default noise and timing [default: by the format of the log, else generic].
     #[arg(long)]
     pub(in crate::cli) profile: Option<RobotProfile>,
-    /// A file of relations between poses that are known from elsewhere, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg
-    /// SLAM benchmark.
+    /// A file of known relations between poses, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg SLAM benchmark.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) relations: Option<PathBuf>,
     /// File to save map and filter to, at the end and every `--save-every` seconds.
     ///
-    /// The file is replaced as a whole: losing power leaves the old or the new one.
+    /// The file is replaced as a whole: a power failure leaves the old or the new one.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) save: Option<PathBuf>,
     /// Seconds of the log's time between two saves.
     #[arg(long, value_name = "SECONDS", requires = "save", value_parser = not_negative)]
     pub(in crate::cli) save_every: Option<f64>,
-    /// Go on from a saved map with what the log holds after it.
+    /// Continue from a saved map, with the later records of the log.
     ///
-    /// Records up to the stamp it was saved at are left out; figures and events are those of the rest.
+    /// Records up to the stamp of the save are skipped; figures and events are those of the rest.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) resume: Option<PathBuf>,
-    /// Tell which directions of the map nothing has ever constrained.
+    /// Report the directions of the map that no measurement has constrained.
     ///
-    /// Detections never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
+    /// Detections cannot constrain position and heading of the whole map; anchors and external sensors can.
     #[arg(long)]
     pub(in crate::cli) observability: bool,
-    /// File for the least squares problem of the batch, with the pairings of the filter: text, for logs of points.
+    /// File for the least squares problem of the batch, with the associations of the filter: text, for logs of points.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) graph_out: Option<PathBuf>,
     #[command(flatten)]
@@ -125,7 +124,7 @@ Examples:
   wayfix run slam --log plaza --estimator smoother                      ranges to beacons of unknown place
   wayfix run slam --log tuesday.mcap --resume floor.map --save floor.map
 
-A file of parameters names what differs from the defaults, for instance
+A parameter file has only the keys that differ from the defaults, for instance
   [sensor]
   range_sigma = 0.10      # m
   bearing_sigma = 0.03    # rad";
@@ -192,8 +191,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     )
 }
 
-/// Runs EKF-SLAM with one kind of landmark, and shows and saves the result. `input` is the format, the number of records and how reading
-/// them went.
+/// Runs EKF-SLAM with one kind of landmark, and shows and saves the result. `input` is the format, the number of records and the result of
+/// reading them.
 pub(super) fn execute<F: FrontEnd, T>(
     arguments: &Arguments,
     (origin, n_records, read): (LogFormat, usize, &ReadReport),

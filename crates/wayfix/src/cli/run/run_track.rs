@@ -48,7 +48,7 @@ pub(in crate::cli) struct Arguments {
     /// The same as a mask image of the size of the frames, in which the target is not black; it gives `contour` the exact outline.
     #[arg(long, value_name = "FILE", conflicts_with = "init")]
     init_mask: Option<PathBuf>,
-    /// Detect a head instead: a folder of pictures that teach its colours and rim. The tracker starts in the first frame with a head.
+    /// Detect a head instead of --init: a folder of pictures from which its colours and rim are learned. The tracker starts in the first frame with a head.
     #[arg(long, value_name = "DIR", requires = "learn_truth", conflicts_with_all = ["init", "init_mask"])]
     learn_from: Option<PathBuf>,
     /// True boxes of --learn-from, one line a picture.
@@ -57,7 +57,7 @@ pub(in crate::cli) struct Arguments {
     /// True boxes, one line a frame.
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
-    /// Which tracker.
+    /// The tracker.
     #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
     method: TrackingMethod,
     /// The head and contour trackers as published by Andrade-Cetto 2005, without the additions.

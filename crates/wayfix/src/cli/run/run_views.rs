@@ -23,7 +23,7 @@ use wayfix_table_log::{MoveTable, MovedFrameFolder};
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
 ///
 /// An image is divided into overlapping views, one every --step pixels; each is a place. The robot learns the features of every view. It starts at a
-/// random place of the same scene on another day (other light, some pixels aside) and drives to a goal, one view per move, until it reports the goal
+/// random place of the same scene on another day (other light, shifted by some pixels) and drives to a goal, one view per move, until it reports the goal
 /// as reached. This is repeated --trials times with random starts and goals.
 ///
 /// Without --learn-from the other day is computed from the image: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options override
@@ -82,7 +82,7 @@ pub(in crate::cli) struct Arguments {
     /// Estimate the mean shift of the camera of --scene relative to that of --learn-from, up to N pixels in each direction, and remove it.
     #[arg(long, value_name = "N", value_parser = positive(), requires = "learn_from")]
     register: Option<u64>,
-    /// Among moves that lead equally near to the goal, take the one with the largest expected information, comparing the N best places.
+    /// Among moves that end equally near to the goal, take the one with the largest expected information, comparing the N best places.
     #[arg(long, value_name = "N")]
     informed: Option<usize>,
     /// The method as published by Kasprzak & Szynkiewicz, without the additions; the paper has no normalization `online`.
@@ -92,7 +92,7 @@ pub(in crate::cli) struct Arguments {
     common: Common,
 }
 
-/// What a logged drive has no use for.
+/// Options that a logged drive does not use.
 const SCENE_OPTIONS: [&str; 11] = [
     "scene",
     "view",

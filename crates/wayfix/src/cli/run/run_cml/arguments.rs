@@ -18,13 +18,13 @@ use wayfix_table_log::PoseTableColumns;
 /// Views are panoramas (a column for each direction, a row for each height), or raw images of an omnidirectional camera with `--center` and
 /// `--radii`. The options determine the task, which the first line of the output states:
 ///
-/// * **Concurrent map building and localization**: a log without more options. The map grows from nothing while the robot localizes in it; the
+/// * **Concurrent map building and localization**: a log without more options. The map starts empty and grows while the robot localizes in it; the
 ///   start is known.
 ///
 /// * **Learn, then localize**: a folder of frames with poses, or `--withhold N`: every N-th view is localized and never learned; the others are
 ///   learned before, with their poses. With `--learn-from`, another traverse is learned and all views of this one are localized.
 ///
-/// * **Localize in a saved map**: `--map`, or `--resume` to go on where the robot was.
+/// * **Localize in a saved map**: `--map`, or `--resume` to continue from the last pose.
 ///
 /// Poses come as a table, with comma, semicolon, tab or blanks between the columns. Its first row names them: file or frame, t or time, x, y,
 /// heading or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). `--columns` names those of a table without such a row. Poses are
@@ -38,7 +38,7 @@ use wayfix_table_log::PoseTableColumns;
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
 pub(crate) struct Arguments {
-    /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses; several are the files of one recording.
+    /// A log with images, odometry (increments or velocities) and, for the errors, true poses. Repeat it for the files of one recording.
     #[arg(long, value_name = "PATH", conflicts_with = "frames")]
     pub(super) log: Vec<PathBuf>,
     #[command(flatten)]
@@ -67,31 +67,31 @@ pub(crate) struct Arguments {
         conflicts_with = "withhold"
     )]
     pub(super) learn_from: Option<PathBuf>,
-    /// The table of its poses.
+    /// The table of the poses of --learn-from.
     #[arg(long, value_name = "CSV", requires = "learn_from")]
     pub(super) learn_poses: Option<PathBuf>,
-    /// The table of its times.
+    /// The table of the frame times of --learn-from.
     #[arg(long, value_name = "FILE", requires = "learn_from")]
     pub(super) learn_stamps: Option<PathBuf>,
     /// Learn the views with their true poses, except every N-th, which is localized; 0 learns none and builds the map during the run
     /// [default: 5 for frames, 0 for a log].
     #[arg(long, value_name = "N")]
     pub(super) withhold: Option<usize>,
-    /// The map that is given: one of `--map-out` or `--save`.
+    /// A saved map: a file of `--map-out` or `--save`.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["withhold", "learn_from"])]
     pub(super) map: Option<PathBuf>,
-    /// File for the map that was made, at the end.
+    /// File to save the map to, at the end.
     #[arg(long, value_name = "FILE")]
     pub(super) map_out: Option<PathBuf>,
     /// File to save map and belief to, at the end and every `--save-every` seconds.
     ///
-    /// Losing power leaves a whole map.
+    /// A power failure leaves a whole map.
     #[arg(long, value_name = "FILE")]
     pub(super) save: Option<PathBuf>,
     /// Seconds of the log's time between two saves.
     #[arg(long, value_name = "SECONDS", requires = "save", value_parser = seconds)]
     pub(super) save_every: Option<f64>,
-    /// Go on from a file of `--save`: with its map, and where the robot was.
+    /// Continue from a file of `--save`, with its map and belief.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "withhold", "learn_from"])]
     pub(super) resume: Option<PathBuf>,
     /// Where the robot is at the first view: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
