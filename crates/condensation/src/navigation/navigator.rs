@@ -24,7 +24,7 @@ pub trait NavigationEnvironment<A> {
 pub struct NavigatorParams {
     /// Confidence at which the robot stops at the goal.
     pub goal_confidence: f64,
-    /// Number of consecutive views with that confidence: one view can mislead.
+    /// Number of consecutive views with that confidence: one view can be wrong.
     pub n_confirmations: usize,
     /// Most moves of a run.
     pub max_steps: usize,
