@@ -69,7 +69,7 @@ impl<S: DiscreteStateSpace> Navigator<S> {
         Self::with_transitions(space, transitions, params)
     }
 
-    /// With transitions of one's own, learned from a log of moves, say: one for every action of the space.
+    /// With custom transitions, for example learned from a log of moves: one for every action of the space.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`], or [`CondensationError::Dimension`] when there are more or fewer than actions.
