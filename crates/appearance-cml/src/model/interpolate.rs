@@ -84,7 +84,7 @@ fn pose_of(
     let spread: Matrix2<f64> =
         places().map(|(place, share)| outer(&(place.translation - interpolated)) * share).sum();
     let to_body = mean.rotation_matrix().transpose();
-    // Interpolation halves what the nearest place alone would err by, about; beyond the border there is none.
+    // Interpolation about halves the error of the nearest place alone; beyond the border there is none.
     let gap = scale.to_meters(nearest) / if beyond.is_some() { 1.0 } else { 2.0 };
     let comparison = to_body * spread * to_body.transpose() / 2.0 + Matrix2::identity() * (gap * gap);
     let mut compared = comparison.to_homogeneous();
