@@ -230,7 +230,7 @@ fn next_entry(bytes: &[u8]) -> Next<'_> {
     }
 }
 
-/// No entry is longer than this, and none that is swallowed begins later.
+/// No entry is longer than this, and none within that length begins later.
 const LONGEST_SWALLOWED: usize = 1 << 16;
 
 /// Whether a whole entry begins anywhere behind the beginning.

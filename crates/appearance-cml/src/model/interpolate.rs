@@ -28,7 +28,7 @@ pub fn interpolate(
 /// Maximum number of places that are interpolated: a point has six nearest neighbours in the densest lattice of the plane. Also the radius of
 /// a group, in steps: along a lane of references that many lie within it.
 pub(crate) const GROUP_SIZE: usize = 6;
-/// σ of the heading from the comparison with a reference at the same place, rad. In rearranged simulated stores the best rotation errs by 2° in the
+/// σ of the heading from the comparison with a reference at the same place, rad. In rearranged simulated stores the best rotation has an error of 2° in the
 /// mean, with a median of 0.8°.
 pub(crate) const HEADING_SIGMA: f64 = 0.03;
 /// Additional σ for a view that differs from its reference as much as one of a far place, rad. The best rotation follows objects that appear in
@@ -84,7 +84,7 @@ fn pose_of(
     let spread: Matrix2<f64> =
         places().map(|(place, share)| outer(&(place.translation - interpolated)) * share).sum();
     let to_body = mean.rotation_matrix().transpose();
-    // Interpolation halves what the nearest place alone would err by, about; beyond the border there is none.
+    // Interpolation about halves the error of the nearest place alone; beyond the border there is none.
     let gap = scale.to_meters(nearest) / if beyond.is_some() { 1.0 } else { 2.0 };
     let comparison = to_body * spread * to_body.transpose() / 2.0 + Matrix2::identity() * (gap * gap);
     let mut compared = comparison.to_homogeneous();

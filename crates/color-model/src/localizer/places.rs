@@ -78,7 +78,7 @@ where
         Ok(Some(is_certain))
     }
 
-    /// Log-odds of another place before a search. A robot that knew its start is elsewhere only if it was moved. A search counts as a metre of driving.
+    /// Log-odds of another place before a search. A robot with a known start is elsewhere only after a kidnapping. A search counts as a metre of driving.
     fn log_prior_odds(&self, is_start: bool) -> f64 {
         match self.start {
             StartPosePrior::Near(_) if !is_start => {

@@ -19,7 +19,7 @@ pub struct AppearanceLearningParams {
 impl AppearanceLearningParams {
     /// For views normalized from statistics of the whole scene.
     ///
-    /// What is left is a shift of some pixels (a standard deviation of 2.4 on each axis, so that five pixels are no surprise) and a light
+    /// What is left is a shift of some pixels (a standard deviation of 2.4 on each axis, so that five pixels are probable) and a light
     /// that normalization missed: the scene in view is not quite the one learned, and grey values are rounded twice. That is a few per cent,
     /// but not exactly of the form gain, offset, gamma, so a tenth is allowed for.
     pub fn normalized() -> Self {

@@ -24,7 +24,7 @@ pub trait NavigationEnvironment<A> {
 pub struct NavigatorParams {
     /// Confidence at which the robot stops at the goal.
     pub goal_confidence: f64,
-    /// Number of consecutive views with that confidence: one view can mislead.
+    /// Number of consecutive views with that confidence: one view can be wrong.
     pub n_confirmations: usize,
     /// Most moves of a run.
     pub max_steps: usize,
@@ -69,7 +69,7 @@ impl<S: DiscreteStateSpace> Navigator<S> {
         Self::with_transitions(space, transitions, params)
     }
 
-    /// With transitions of one's own, learned from a log of moves, say: one for every action of the space.
+    /// With custom transitions, for example learned from a log of moves: one for every action of the space.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`], or [`CondensationError::Dimension`] when there are more or fewer than actions.

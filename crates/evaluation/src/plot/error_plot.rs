@@ -5,7 +5,7 @@ use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
 use super::{PlotError, SvgPlot};
 
-/// Error of a planar pose against time, inside the ±3σ band that the filter claims: x, y and heading.
+/// Error of a planar pose against time, inside the ±3σ band of the filter: x, y and heading.
 ///
 /// ```
 /// use wayfix_evaluation::plot::{PoseErrorPlot, PoseErrorSample};
@@ -29,7 +29,7 @@ pub struct PoseErrorSample {
     pub t: f64,
     /// Estimate minus truth: x and y in metres, heading in radians.
     pub error: [f64; 3],
-    /// Standard deviations that the filter claims for them.
+    /// Standard deviations of them by the filter.
     pub sigma: [f64; 3],
 }
 

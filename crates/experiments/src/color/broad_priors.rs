@@ -24,7 +24,7 @@ const MIREDS: std::ops::Range<f64> = 1e6 / 10_000.0..1e6 / 2_700.0;
 const TINT_SIGMA: f64 = 0.04;
 /// Presets of the white balance, kelvin, as in [`LeagueVenue`]; half of the cameras have one, the nearest or the next.
 const WHITE_BALANCES: [f64; 3] = [2800.0, 4300.0, 5600.0];
-/// Standard deviation of the logarithm of the gain of a channel that balances white by itself: grey world errs by 6.3° in the median on photographs.
+/// Standard deviation of the logarithm of the gain of a channel that balances white by itself: grey world has a median error of 6.3° on photographs.
 /// [Gijsenij et al. 2011]
 const WHITE_BALANCE_SIGMA: f64 = 0.13;
 /// Reflectance to which exposure meters are set. [ISO 2720]

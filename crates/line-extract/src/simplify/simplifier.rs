@@ -71,7 +71,7 @@ impl Default for PolylineSimplifier {
 }
 
 impl PolylineSimplifier {
-    /// Queries the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
+    /// Queries the hulls from the beginning, which is slower on simple chains and faster on the worst ones.
     pub fn hull_tree_only() -> Self {
         Self { scan_budget: 0, ..Self::default() }
     }

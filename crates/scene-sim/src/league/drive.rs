@@ -73,7 +73,7 @@ impl LeagueDrive {
         Self::in_venue(params, venue, streams)
     }
 
-    /// The same in a venue of one's own.
+    /// The same in a custom venue.
     ///
     /// # Errors
     /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.

@@ -43,7 +43,7 @@ impl ColorHistogram {
         Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
     }
 
-    /// From counts of one's own, one a bin.
+    /// From given counts, one a bin.
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].

@@ -51,7 +51,7 @@ pub struct ColorContourTracker {
 }
 
 impl ColorContourTracker {
-    /// The same with dynamics of the colours of one's own, learned ([`ColorDynamics::learn`]) for instance.
+    /// The same with custom dynamics of the colours, for example learned ones ([`ColorDynamics::learn`]).
     #[must_use]
     pub fn with_dynamics(self, dynamics: ColorDynamics) -> Self {
         Self { dynamics, ..self }

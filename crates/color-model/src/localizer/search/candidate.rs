@@ -13,7 +13,7 @@ pub(super) struct Candidate {
     /// Of each frame that was weighed, its index and its log-likelihood in the light.
     pub(super) log_likelihoods: Vec<(usize, LogWeight)>,
     pub(super) steps: Steps,
-    /// The place that a filter knew before the search, if the candidate started there; it stays there.
+    /// The place of a filter before the search, if the candidate started there; it stays there.
     pub(super) known: Option<Pose2<f64>>,
 }
 

@@ -59,7 +59,7 @@ pub enum ExposureMode {
 }
 
 impl CameraParams {
-    /// The defaults, for a camera of one's own.
+    /// The defaults, for a custom camera.
     pub fn new(camera: PinholeCamera) -> Self {
         Self {
             camera,

@@ -26,9 +26,9 @@ use wayfix_systems::color::{
 /// The log holds camera images, the camera's calibration, its pose from the joint angles, and odometry; the map holds the colours of the surfaces.
 /// Colours need no calibration: priors describe dark and bright light, and the filter estimates the actual one.
 ///
-/// If the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures include the errors of the
-/// estimate, `position_mean_m` and `heading_mean_deg`, and `dead_reckoning_position_error_mean_m` for odometry alone from the same start. With true labels,
-/// `classification_rate` is the share of labelled pixels that are classified correctly. Without truth these figures are absent.
+/// If the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation). The figures then include the errors of the
+/// estimate, `position_mean_m` and `heading_mean_deg`. `dead_reckoning_position_error_mean_m` is that of odometry alone from the same start. With true
+/// labels, `classification_rate` is the share of labelled pixels that are classified correctly. Without truth these figures are absent.
 ///
 /// Unusable records are skipped, counted in the events and listed on standard error; the run continues.
 #[derive(clap::Args)]

@@ -19,9 +19,9 @@ use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 /// Walls: the straight segments in every laser scan of a log, with their ends.
 ///
-/// The figures are the number of scans, the number of skipped scans (`n_skipped`, with reasons in the events and on standard error), walls per scan,
-/// the RMS distance of the echoes from their walls, and the computing time. If the log has true walls, also the number of walls within 2σ of the
-/// true ones, of false walls, and of true walls found.
+/// The figures are the numbers of scans and of skipped scans (`n_skipped`), walls per scan, the RMS distance of the echoes from their walls, and the
+/// computing time. The events and standard error have the reasons of skipped scans. If the log has true walls, the figures include the numbers of
+/// walls within 2σ of the true ones, of false walls, and of true walls found.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {

@@ -23,8 +23,8 @@ use wayfix_table_log::{MoveTable, MovedFrameFolder};
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
 ///
 /// An image is divided into overlapping views, one every --step pixels; each is a place. The robot learns the features of every view. It starts at a
-/// random place of the same scene on another day (other light, shifted by some pixels) and drives to a goal, one view per move, until it reports the goal
-/// as reached. This is repeated --trials times with random starts and goals.
+/// random place of the same scene on another day (other light, shifted by some pixels). It drives to a goal, one view per move, until it reports that
+/// it is there. This is repeated --trials times with random starts and goals.
 ///
 /// Without --learn-from the other day is computed from the image: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options override
 /// them. With --learn-from both images are used as they are, and options apply only if given.
