@@ -6,7 +6,7 @@ use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, Variable, VariableI
 
 use super::{
     AntennaPosition, Heading, MountedRangeBearing, PointMapGaussian, PointSmootherParams, PoseObservation,
-    SettledPose, residuals::SamePoint,
+    SettledPose, gaussian::StartPrior, residuals::SamePoint,
 };
 use crate::SlamSmootherError;
 
@@ -27,7 +27,8 @@ pub struct Detection {
 /// window, and a landmark can be taken back.
 pub struct PointSmoother {
     params: PointSmootherParams,
-    pub(super) log_range_scale_sigma: f64,
+    /// What the graph holds of the start, until it is marginalized.
+    pub(super) start: Option<StartPrior>,
     pub(super) graph: Graph,
     pub(super) scale: VariableId<Vector1<f64>>,
     /// Poses in the window, oldest first.
@@ -35,7 +36,7 @@ pub struct PointSmoother {
     n_poses: usize,
     solved_at: Option<f64>,
     pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
-    anchors: BTreeSet<u32>,
+    pub(super) anchors: BTreeSet<u32>,
 }
 
 #[derive(Clone, Copy)]
@@ -78,13 +79,16 @@ impl PointSmoother {
         for (_, landmark) in &landmarks {
             hold_if_exact(&mut graph, *landmark, start, blocks.next(), &mut uncertain)?;
         }
+        let mut prior = None;
         if !uncertain.is_empty() {
-            graph.add_gaussian(&uncertain, start.information()?)?;
+            let information = start.information()?;
+            graph.add_gaussian(&uncertain, information.clone())?;
+            prior = Some(StartPrior { variables: uncertain, mean: start.uncertain_mean(), information });
         }
         Ok(Self {
             solved_at: None,
             params,
-            log_range_scale_sigma: start.covariance[(3, 3)].sqrt(),
+            start: prior,
             graph,
             scale,
             window: VecDeque::from([Frame { number: 0, seconds: None, pose }]),
@@ -221,13 +225,14 @@ impl PointSmoother {
     pub fn remove(&mut self, landmark: u32) -> Result<(), SlamSmootherError> {
         if let Some(id) = self.landmarks.get(&landmark).copied() {
             self.graph.remove_variables(&[id.index()])?;
+            self.start.take_if(|start| start.names(&[id.index()]));
             self.landmarks.remove(&landmark);
             self.anchors.remove(&landmark);
         }
         Ok(())
     }
 
-    /// Says that two landmarks are one.
+    /// Says that two landmarks are one: a batch takes the detections of both for those of one; in a window the second is marginalized.
     ///
     /// # Errors
     /// [`SlamSmootherError::Smoother`] when they cannot be joined.
@@ -236,9 +241,15 @@ impl PointSmoother {
         else {
             return Ok(());
         };
-        self.graph.add(SamePoint, (a, b), Matrix2::identity() * SAME.powi(-2))?;
-        self.graph.optimize(&ONLINE)?;
-        self.graph.marginalize(&[b.index()])?;
+        let is_in_start = self.start.as_ref().is_some_and(|start| start.names(&[b.index()]));
+        if self.params.lag.is_none() && !is_in_start {
+            self.reassign_detections(b, a)?;
+            self.graph.remove_variables(&[b.index()])?;
+        } else {
+            self.graph.add(SamePoint, (a, b), Matrix2::identity() * SAME.powi(-2))?;
+            self.graph.optimize(&ONLINE)?;
+            self.marginalize(&[b.index()])?;
+        }
         self.landmarks.remove(&removed);
         Ok(())
     }
@@ -264,7 +275,7 @@ impl PointSmoother {
         let dropped: Vec<usize> =
             self.window.drain(..settled.len()).map(|frame| frame.pose.index()).collect();
         if !dropped.is_empty() {
-            self.graph.marginalize(&dropped)?;
+            self.marginalize(&dropped)?;
         }
         Ok(settled)
     }
@@ -301,6 +312,31 @@ impl PointSmoother {
     /// Cost of the window, with what was marginalized.
     pub fn cost(&self) -> f64 {
         self.graph.cost()
+    }
+
+    fn marginalize(&mut self, variables: &[usize]) -> Result<(), SlamSmootherError> {
+        self.graph.marginalize(variables)?;
+        self.start.take_if(|start| start.names(variables));
+        Ok(())
+    }
+
+    /// Adds each detection of a landmark as one of another.
+    fn reassign_detections(
+        &mut self,
+        from: VariableId<Vector2<f64>>,
+        to: VariableId<Vector2<f64>>,
+    ) -> Result<(), SlamSmootherError> {
+        let poses: BTreeMap<_, _> =
+            self.window.iter().map(|frame| (frame.pose.index(), frame.pose)).collect();
+        let of_landmark = |(seen, named, information): (&MountedRangeBearing, &[usize], &Matrix2<f64>)| {
+            (named[1] == from.index()).then_some((*seen, *poses.get(&named[0])?, *information))
+        };
+        let detections: Vec<_> = self.graph.residuals().filter_map(of_landmark).collect();
+        for (detection, pose, information) in detections {
+            let added = self.graph.add(detection, (pose, to, self.scale), information)?;
+            self.graph.set_kernel(added, ROBUST)?;
+        }
+        Ok(())
     }
 
     /// The oldest poses of the window as they are.

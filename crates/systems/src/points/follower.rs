@@ -222,20 +222,21 @@ impl SlamFollower<PointSensor> for PointFollower {
     }
 
     fn finish(&mut self) -> Result<SmoothedRun, String> {
-        let graph = (self.is_batch && self.is_graph_recorded).then(|| self.smoother.export());
+        let mut graph = (self.is_batch && self.is_graph_recorded).then(|| self.smoother.export());
         self.try_to(|follower| {
             let settled = follower.smoother.finish()?;
             follower.settle(&settled);
+            if let Some(Ok(graph)) = &mut graph {
+                graph.push_str(&follower.smoother.export_solution()?);
+            }
             Ok(())
         });
-        match &self.failure {
-            Some(failure) => Err(failure.clone()),
-            None => Ok(SmoothedRun {
-                estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
-                landmarks: self.smoother.landmarks(),
-                is_batch: self.is_batch,
-                graph,
-            }),
-        }
+        self.failure.clone().map_or(Ok(()), Err)?;
+        Ok(SmoothedRun {
+            estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
+            landmarks: self.smoother.landmarks(),
+            is_batch: self.is_batch,
+            graph,
+        })
     }
 }

@@ -229,6 +229,7 @@ where
         let graph = slam.smoothed.as_ref().and_then(|smoothed| smoothed.graph.as_ref());
         let graph =
             graph.context("there is no batch of this run: --graph-out needs points and --estimator ekf")?;
+        let graph = graph.as_ref().map_err(Clone::clone).context("--graph-out cannot write this batch")?;
         fs::write(path, graph).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let warnings = add_read_problems(slam.events(), read);
