@@ -14,7 +14,7 @@ use super::{
     follower::PointFollower, state::PointFrontEndState,
 };
 use crate::{
-    slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis},
+    slam::{AssociationRule, FrontEnd, MotionEstimate, SavedMapError, SlamEstimator, SlamSystem, nis},
     system::{EstimateWriter, IncrementPlausibilityCheck, MotionStatistics, Stopwatch, check_velocity},
 };
 
@@ -79,7 +79,7 @@ impl PointSystem {
     }
 
     /// Lets a smoother follow, if the parameters ask for one: from what an earlier one has saved, else from the state of the filter.
-    pub(super) fn follow(&mut self, saved: Option<SavedPoints>) -> Result<(), SlamError> {
+    pub(super) fn follow(&mut self, saved: Option<SavedPoints>) -> Result<(), SavedMapError> {
         let filter = &self.estimator.filter;
         let resume = |saved| EkfSlam::resume(*filter.model(), *filter.params(), saved);
         let saved = saved.map(resume).transpose()?;
