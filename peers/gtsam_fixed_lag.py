@@ -29,10 +29,11 @@ def symmetric(entries, n):
 
 
 class Problem:
-    """Factors in the order of the poses that they need, and where variables start."""
+    """Factors in the order of the poses that they need, where variables start, and the solution of Wayfix."""
 
     def __init__(self, path):
-        self.stamps, self.poses, self.landmarks, self.factors = {}, {}, {}, {}
+        self.stamps, self.poses, self.landmarks, self.factors, self.solution = {}, {}, {}, {}, {}
+        self.held, self.detections, at_start = set(), [], []
         latest = 0.0
         for line in Path(path).read_text().splitlines():
             kind, *words = line.split()
@@ -44,21 +45,59 @@ class Problem:
             elif kind == "LANDMARK":
                 self.landmarks[int(x[0])] = np.array(x[1:3])
             elif kind == "LOG_SCALE":
-                self.scale = int(x[0])
-                noise = gtsam.noiseModel.Isotropic.Sigma(1, x[2] or HELD)
-                prior = gtsam.PriorFactorVector(self.scale, np.zeros(1), noise)
+                self.scale, self.log_scale = int(x[0]), np.array(x[1:2])
+            elif kind == "HELD":
+                self.held.add(int(x[0]))
+                at_start.append(self.tight_prior(int(x[0])))
+            elif kind == "START":
+                at_start.append(start([int(key) for key in x[1 : int(x[0]) + 1]], x[int(x[0]) + 1 :], self))
             elif kind == "MOTION":
                 i, j = int(x[0]), int(x[1])
                 self.add(j, gtsam.BetweenFactorPose2(i, j, gtsam.Pose2(*x[2:5]), FULL(symmetric(x[5:], 3))))
             elif kind == "DETECTION":
-                self.add(int(x[0]), detection([int(key) for key in x[:3]], x[3:5], gtsam.Pose2(*x[5:8]), x[8:]))
+                self.detections.append(([int(key) for key in x[:3]], x[3:5], gtsam.Pose2(*x[5:8]), x[8:]))
+                self.add(int(x[0]), detection(*self.detections[-1]))
+            elif kind == "COST":
+                self.cost = x[0]
+            elif kind == "SOLUTION":
+                self.solution[int(x[0])] = x[1:]
         self.order = list(self.poses)
-        first = self.order[0]
-        held = gtsam.noiseModel.Isotropic.Sigma(3, HELD)
-        self.factors[first] = [prior, gtsam.PriorFactorPose2(first, self.poses[first], held)] + self.factors.get(first, [])
+        self.factors[self.order[0]] = at_start + self.factors.get(self.order[0], [])
 
     def add(self, pose, factor):
         self.factors.setdefault(pose, []).append(factor)
+
+    def tight_prior(self, key):
+        noise = lambda n: gtsam.noiseModel.Isotropic.Sigma(n, HELD)  # noqa: E731
+        if key in self.poses:
+            return gtsam.PriorFactorPose2(key, self.poses[key], noise(3))
+        if key in self.landmarks:
+            return gtsam.PriorFactorPoint2(key, self.landmarks[key], noise(2))
+        return gtsam.PriorFactorVector(key, self.log_scale, noise(1))
+
+
+def start(keys, numbers, problem):
+    """A Gaussian of poses, landmarks and the logarithm of the scale."""
+    dims = [3 if key in problem.poses else 2 if key in problem.landmarks else 1 for key in keys]
+    n = sum(dims)
+    means = np.split(np.array(numbers[:n]), np.cumsum(dims)[:-1])
+
+    def error(_, values, jacobians):
+        parts = []
+        for place, (key, dim, mean) in enumerate(zip(keys, dims, means)):
+            by_own = np.eye(dim)
+            if dim == 3:
+                moved = gtsam.Pose2(*mean).between(values.atPose2(key))
+                parts.append(gtsam.Pose2.Logmap(moved))
+                by_own = gtsam.Pose2.LogmapDerivative(moved)
+            else:
+                parts.append((values.atPoint2(key) if dim == 2 else values.atVector(key)) - mean)
+            if jacobians is not None:
+                jacobians[place] = np.zeros((n, dim), order="F")
+                jacobians[place][sum(dims[:place]) : sum(dims[: place + 1])] = by_own
+        return np.concatenate(parts)
+
+    return gtsam.CustomFactor(FULL(symmetric(numbers[n:], n)), keys, error)
 
 
 def detection(keys, measured, mount, information):
@@ -90,7 +129,7 @@ def batch(problem):
         values.insert(id, pose)
     for id, place in problem.landmarks.items():
         values.insert(id, place)
-    values.insert(problem.scale, np.zeros(1))
+    values.insert(problem.scale, problem.log_scale)
     params = gtsam.LevenbergMarquardtParams()
     params.setRelativeErrorTol(1e-12)
     params.setAbsoluteErrorTol(1e-12)
@@ -103,7 +142,7 @@ def online(problem, smoother, drops):
     """Each pose as it is when it becomes older than the lag; landmarks stay."""
     settled, known, estimate, solved = {}, {problem.scale}, None, -np.inf
     graph, values, pose = gtsam.NonlinearFactorGraph(), gtsam.Values(), problem.poses[problem.order[0]]
-    values.insert(problem.scale, np.zeros(1))
+    values.insert(problem.scale, problem.log_scale)
     waiting, stamps = list(problem.order), {}
     for number, id in enumerate(problem.order):
         stamp = problem.stamps[id]

@@ -32,6 +32,14 @@ pub enum SlamSmootherError {
         /// Its identity.
         landmark: u32,
     },
+    /// A problem with residuals that its text has no lines for.
+    #[error(
+        "{n_residuals} residuals are neither motions nor detections: measurements of the pose, or what was marginalized"
+    )]
+    NotExported {
+        /// Number of these residuals.
+        n_residuals: usize,
+    },
     /// No beacon has a place: there are too few ranges, or they leave two places each.
     #[error(
         "none of {n_beacons} beacons can be placed by {n_ranges} ranges: the path must turn, and a beacon needs at least {min_ranges} ranges"

@@ -7,7 +7,6 @@ mod harness;
 
 use std::hint::black_box;
 
-use harness::measure;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_visual_tracking::{
@@ -15,6 +14,8 @@ use wayfix_visual_tracking::{
     CorrelationTrackerParams, HeadTracker, HeadTrackerParams, PixelConnectivity, PixelRect, RgbImage,
     RowSpans, SlidingHistogram, StructuringElement, Tracker,
 };
+
+use harness::measure;
 
 const SIZE: (usize, usize) = (320, 240);
 const TARGET: PixelRect = PixelRect { left: 130, top: 90, width: 60, height: 60 };

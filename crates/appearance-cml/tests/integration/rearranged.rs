@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use crate::common::{Field, FieldView, N_STEPS, beside, between, drifting, known};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_appearance_cml::{
     AppearanceLocalizer, AppearanceMap, LocalizerParams, MapLearning, StartPosePrior,
 };
+
+use crate::common::{Field, FieldView, N_STEPS, beside, between, drifting, known};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::support::{field, random_pose};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{ColorId, LabelImage, MapRenderer, PinholeCamera};
+
+use crate::support::{field, random_pose};
 
 /// The label of a pixel, if all pixels of the image within `margin` have it too.
 fn inner(labels: &LabelImage, column: u32, row: u32, margin: u32) -> Option<ColorId> {

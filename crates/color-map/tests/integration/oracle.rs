@@ -7,7 +7,6 @@ use crate::support;
 
 use std::sync::Arc;
 
-use crate::support::{cast_labels, first_difference, random_camera, random_pose};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -16,6 +15,8 @@ use wayfix_color_map::{
     nalgebra::{Quaternion, UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
+
+use crate::support::{cast_labels, first_difference, random_camera, random_pose};
 
 const N_COLORS: u8 = 7;
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::support::{BRIGHT, common_gain, filter, means, noisy, stacked};
 use nalgebra::DVector;
 use rand::{RngExt, SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
@@ -12,6 +11,8 @@ use wayfix_color_model::{
 };
 use wayfix_gaussian_core::moment_matched;
 use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
+
+use crate::support::{BRIGHT, common_gain, filter, means, noisy, stacked};
 
 /// Two lights; the dark one has two fifths of the brightness and colour.
 fn dark() -> Vec<[f64; 3]> {

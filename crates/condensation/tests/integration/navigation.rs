@@ -3,11 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
-use std::sync::Arc;
-
-use crate::common::{Drive, scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
     DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
@@ -15,6 +13,8 @@ use wayfix_condensation::{
     SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped,
     shifted,
 };
+
+use crate::common::{Drive, scene};
 
 struct Trial {
     views: ViewGrid,

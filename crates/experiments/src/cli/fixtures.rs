@@ -1,12 +1,12 @@
 use std::{fs, path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::print;
 
 use crate::{
     color::{TrainingHalls, learn_broad_priors},
     fixtures,
 };
-use wayfix_evaluation::terminal::print;
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {

@@ -1,15 +1,15 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
+use wayfix_evaluation::plot::MapPlot;
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::world::SensorWorld;
+use wayfix_systems::cml::PanoramaLocalizer;
 
 use super::localize_trip::known_start;
 use super::summary::{largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::plot::MapPlot;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Laps around the shelves. [Gross et al. 2005, Fig. 4]
 const N_LAPS: usize = 7;

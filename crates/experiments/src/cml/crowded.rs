@@ -1,13 +1,13 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
+use wayfix_systems::cml::PanoramaLocalizer;
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::PanoramaLocalizer;
 
 /// People in 25 m × 10 m: almost every view shows a person.
 const N_PEOPLE: usize = 12;

@@ -1,14 +1,14 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{LocalizerParams, MapLearning};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
+use wayfix_systems::cml::histogram;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 use super::localize_trip::{known_start, taught};
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::histogram;
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// Customers and employees in the store.
 const N_PEOPLE: usize = 20;

@@ -1,14 +1,14 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{AppearanceMapParams, ForgettingMode, LocalizerParams};
+use wayfix_evaluation::plot::{LinePlot, PlotSeries};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorDriveParams, Laboratory};
+use wayfix_systems::cml::PanoramaLocalizer;
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::plot::{LinePlot, PlotSeries};
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Mean time between two changes of lamps or curtains, seconds.
 const SWITCHING_S: f64 = 30.0;

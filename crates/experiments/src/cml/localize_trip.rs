@@ -4,9 +4,9 @@ use wayfix_appearance_cml::{LocalizerEvent, LocalizerParams, StartPosePrior};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_system_core::Stopwatch;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 use super::SimulatedDrive;
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// Standard deviations of a pose surveyed by hand, m, m and rad.
 const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];

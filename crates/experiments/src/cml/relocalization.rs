@@ -4,18 +4,18 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use wayfix_appearance_cml::StartPosePrior;
+use wayfix_evaluation::errors::proportion_interval;
+use wayfix_evaluation::plot::LinePlot;
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::route::Route;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 use super::localize_trip::{known_start, taught};
 use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use crate::error_quantiles::error_quantiles;
-use wayfix_evaluation::errors::proportion_interval;
-use wayfix_evaluation::plot::LinePlot;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// A run has succeeded that ends this near, metres.
 const NEAR_M: f64 = 1.0;

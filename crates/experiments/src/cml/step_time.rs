@@ -3,15 +3,15 @@ use std::hint::black_box;
 use anyhow::Result;
 use wayfix_appearance_cml::{LocalizerParams, MapLearning, PanoramaDescriptor, StartPosePrior};
 use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotSeries, statistics::quantile};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{IndoorDriveParams, RetailStore, RetailStoreParams};
 use wayfix_system_core::Stopwatch;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveStep, localize_trip};
-use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotSeries, statistics::quantile};
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// Numbers of references.
 const N_REFERENCES: [usize; 7] = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];

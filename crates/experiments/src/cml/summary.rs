@@ -1,9 +1,9 @@
 use anyhow::Result;
 use rayon::prelude::*;
-
-use super::CmlExperimentSetup;
 use wayfix_evaluation::errors::MeanInterval;
 use wayfix_evaluation::report::Metric;
+
+use super::CmlExperimentSetup;
 
 /// Does an experiment with every seed, side by side; the results in the order of the seeds.
 pub(super) fn over_seeds<T: Send>(

@@ -1,16 +1,16 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
+use wayfix_evaluation::plot::MapPlot;
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::indoors::{Building, IndoorDriveParams, RetailStore, RetailStoreParams};
+use wayfix_systems::cml::histogram;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 use super::area::plan;
 use super::localize_trip::known_start;
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
 use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
-use wayfix_evaluation::plot::MapPlot;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::cml::histogram;
-use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 const N_DAYS: usize = 3;
 /// Share of the shelf sections that are rearranged over night.

@@ -5,16 +5,16 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
-use wayfix_scene_sim::league::{LampSetting, LeagueParams};
-use wayfix_scene_sim::random::RandomStreams;
-
-use crate::error_quantiles::error_quantiles;
 use wayfix_evaluation::{
     errors::proportion_interval,
     plot::{LinePlot, PlotError},
     report::{Metric, ReportRun},
 };
+use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
+
+use crate::error_quantiles::error_quantiles;
 
 /// Maximum position error of a successful run, m.
 const NEAR_M: f64 = 0.2;

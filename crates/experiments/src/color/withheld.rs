@@ -4,15 +4,15 @@ use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::LightingPriors;
-use wayfix_scene_sim::league::LeagueParams;
-use wayfix_sensor_log::Record;
-
-use super::halls::drive;
 use wayfix_evaluation::{
     errors::MeanInterval,
     report::{Metric, ReportRun},
 };
+use wayfix_scene_sim::league::LeagueParams;
+use wayfix_sensor_log::Record;
 use wayfix_systems::color::{ColorSystemParams, priors, rate_of, run};
+
+use super::halls::drive;
 
 /// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;

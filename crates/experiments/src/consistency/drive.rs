@@ -1,5 +1,6 @@
 use anyhow::{Context, Result};
 use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::errors::PoseWithTruth;
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
 use wayfix_slam_ekf::{
     EkfSlam, KnownIdAssociation, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
@@ -7,7 +8,6 @@ use wayfix_slam_ekf::{
 
 use super::{ComparedFilter, CorridorLaps};
 use crate::monobot::plain_filter;
-use wayfix_evaluation::errors::PoseWithTruth;
 
 /// Estimate and truth after one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]

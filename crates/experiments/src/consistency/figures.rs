@@ -1,9 +1,9 @@
 use anyhow::{Result, ensure};
+use wayfix_evaluation::report::Metric;
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_sensor_log::Record;
 
 use super::{ComparedFilter, ConsistencySample, CorridorLaps, drive};
-use wayfix_evaluation::report::Metric;
 
 /// Results of one filter over all logs, scan by scan.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 use anyhow::Result;
 use wayfix_condensation::StateDescriptorTable;
-
-use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 use wayfix_evaluation::report::Metric;
 use wayfix_systems::views::DescriptorKind;
+
+use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 
 /// Results of one feature in the corridor, in all variants.
 pub(super) struct Variants {

@@ -1,13 +1,13 @@
 use anyhow::Result;
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 use wayfix_sensor_log::EncodedImage;
+use wayfix_systems::views::{DescriptorKind, shade};
 
 use super::{
     figures::Variants,
     localize::LocalizationRun,
     traverses::{Frame, Traverses},
 };
-use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
-use wayfix_systems::views::{DescriptorKind, shade};
 
 /// Pixels a frame and a place of a belief map.
 const CELL: usize = 4;

@@ -1,15 +1,15 @@
 use std::{collections::BTreeMap, path::Path};
 
 use anyhow::Result;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_system_core::Stopwatch;
+use wayfix_systems::views::DescriptorKind;
 
 use super::{
     figures::{Variants, metrics},
     plots::plots,
     traverses::{Traverses, features},
 };
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::views::DescriptorKind;
 
 /// Learns one traverse and localizes the other; see the [module](super) for the figures.
 /// # Errors

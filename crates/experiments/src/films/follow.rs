@@ -3,14 +3,14 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::film::{FilmFrame, SyntheticFilm};
 use wayfix_sensor_log::Stamp;
 use wayfix_system_core::Stopwatch;
+use wayfix_systems::track::{
+    InitialTargetRegion, TargetTruth, TrackFrameResult, TrackParams, TrackingMethod,
+};
 use wayfix_visual_tracking::RgbImage;
 
 use super::{
     FilmTrackingScore,
     score::{bounds, mask},
-};
-use wayfix_systems::track::{
-    InitialTargetRegion, TargetTruth, TrackFrameResult, TrackParams, TrackingMethod,
 };
 
 /// Runs trackers of several methods on a film, each started with the true mask of the first frame, and scores the later frames.

@@ -2,14 +2,14 @@ use std::{ops::Range, time::Duration};
 
 use anyhow::Result;
 use rayon::prelude::*;
-use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
-
-use super::{FilmTrackingScore, follow, score::mean};
 use wayfix_evaluation::{
     errors::MeanInterval,
     report::{ConfidenceInterval, Metric, ReportRun},
 };
+use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 use wayfix_systems::track::{LostStatusScore, TrackParams, TrackRunHistory, TrackingMethod, plots};
+
+use super::{FilmTrackingScore, follow, score::mean};
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
 const N_END: usize = 20;

@@ -1,10 +1,10 @@
 use anyhow::{Result, ensure};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};
 
 use super::{MonobotDrive, WorldReference, drive};
-use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 /// Many drives with the same parameters and different noise.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 use anyhow::Result;
+use wayfix_evaluation::report::{FullReport, MachineInfo, ReportRun, ReportSuite, commit};
 
 use super::{
     CampaignShard, CompletedRun, MetricBound, PlannedRun, ReferenceFigures, RegressOptions, SeededRun,
     SuitePlan, cells, over_seeds::over_seeds, plan::judge,
 };
-use wayfix_evaluation::report::{FullReport, MachineInfo, ReportRun, ReportSuite, commit};
 
 /// The report of all runs in `done`, in the order of the plans: figures over all seeds, with a verdict for each. Other runs are `pending`.
 ///

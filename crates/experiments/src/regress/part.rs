@@ -6,9 +6,9 @@ use std::{
 
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
+use wayfix_evaluation::report::{ReportRun, commit, replace_file};
 
 use super::{CampaignShard, CompletedRun, RegressOptions, RunSelection, SeededRun, cells};
-use wayfix_evaluation::report::{ReportRun, commit, replace_file};
 
 /// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,10 +6,10 @@ use std::{
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_system_core::Stopwatch;
 
 use super::{CampaignShard, PlannedJob, RunSelection, SeededRun, SuitePlan, campaign::job, cells, suites};
-use wayfix_evaluation::report::ReportRun;
 
 /// Work to do and output folder.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 use wayfix_color_model::ColorDensity;
-
-use super::{methods::Method, score::VenueScore, venue::Venue};
 use wayfix_evaluation::{
     errors::MeanInterval,
     plot::{CovarianceEllipsesPlot, LinePlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
     report::Metric,
 };
+
+use super::{methods::Method, score::VenueScore, venue::Venue};
 
 const BOUND: &str = "the own-venue oracle's 0.999 and the best known 0.994 in the worst venue, rounded down";
 

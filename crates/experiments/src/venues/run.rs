@@ -1,10 +1,10 @@
 use std::{collections::BTreeMap, path::Path};
 
 use anyhow::{Context, Result, bail};
+use wayfix_evaluation::report::ReportRun;
 use wayfix_system_core::Stopwatch;
 
 use super::{figures, score::score, venue::Venue};
-use wayfix_evaluation::report::ReportRun;
 
 /// Fewer venues leave too little to learn from.
 const MIN_VENUES: usize = 3;

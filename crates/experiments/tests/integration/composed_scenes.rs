@@ -3,14 +3,14 @@
 
 use approx::assert_abs_diff_eq;
 use std::fs;
-
-use crate::common::experiments;
 use wayfix_condensation::{DiscreteStateSpace, RgbImage, ViewGrid};
 use wayfix_evaluation::report::{FullReport, Metric, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 use wayfix_systems::views::{
     self, DescriptorKind, LightNormalization, ViewSystemConfig, ViewsParams, ViewsRun,
 };
+
+use crate::common::experiments;
 
 fn figure(metrics: &[Metric], name: &str) -> f64 {
     metrics.iter().find(|metric| metric.name == name).expect(name).value

@@ -2,8 +2,9 @@
 
 use std::fs;
 
-use crate::common::{Scratch, experiments};
 use serde_json::Value;
+
+use crate::common::{Scratch, experiments};
 
 const PLAN: &str = r#"
 [[run]]

@@ -2,8 +2,9 @@
 
 use std::{fs, path::Path};
 
-use crate::common::{Outcome, Scratch, experiments};
 use serde_json::Value;
+
+use crate::common::{Outcome, Scratch, experiments};
 
 const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 

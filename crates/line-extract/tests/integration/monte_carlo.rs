@@ -2,10 +2,9 @@
 
 use crate::support;
 
-use approx::abs_diff_eq;
 use std::f64::consts::PI;
 
-use crate::support::{Laser, room, wall};
+use approx::abs_diff_eq;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -14,6 +13,8 @@ use wayfix_line_extract::{
     HessianLine, LineEstimate, LineExtractionParams, LineExtractor, LineFit, RangeBearingNoise, Scan,
     WallHypothesis, WallSegment, fit_line,
 };
+
+use crate::support::{Laser, room, wall};
 
 const SEED_FIT: u64 = 51;
 const SEED_ROOM: u64 = 52;

@@ -4,7 +4,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::{Runs, standard_error};
 use nalgebra::{Matrix1, U1, Vector1};
 use rand::distr::Distribution as _;
 use rand::{RngExt as _, SeedableRng};
@@ -14,6 +13,8 @@ use wayfix_kalman::{KalmanError, KalmanFilter, LinearMotion, LinearSensor};
 use wayfix_particle::{
     ParticleChunkRng, ParticleError, ParticleSet, RaoBlackwellParticle, SystematicResampler, map_conditionals,
 };
+
+use crate::common::{Runs, standard_error};
 
 type Conditional = KalmanFilter<f64, U1>;
 type Sensor = LinearSensor<Vector1<f64>, Vector1<f64>>;

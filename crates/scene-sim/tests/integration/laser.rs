@@ -2,14 +2,14 @@
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::FRAC_PI_2;
-
-use crate::support::{assert_near, assert_share, deviation, mean, streams};
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::RangeDependentSigma;
 use wayfix_scene_sim::sensor::{Laser, LaserParams, SimulatedSensor, TrueState};
 use wayfix_scene_sim::world::{FloorPlan, PlanarWorld, Wall};
 use wayfix_sensor_log::{LaserScan, RecordData};
+
+use crate::support::{assert_near, assert_share, deviation, mean, streams};
 
 /// No error at all.
 fn exact() -> LaserParams {

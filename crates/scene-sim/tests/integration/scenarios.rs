@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::run;
 use wayfix_scene_sim::Scenario;
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
+
+use crate::support::run;
 
 fn detections(records: &[Record]) -> Vec<Detection> {
     let of = |record: &Record| match &record.data {

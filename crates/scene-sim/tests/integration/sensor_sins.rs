@@ -2,8 +2,6 @@
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::{FRAC_PI_2, PI};
-
-use crate::support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{
@@ -11,6 +9,8 @@ use wayfix_scene_sim::sensor::range_bearing::{
 };
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
 use wayfix_sensor_log::{Detection, DetectionTarget};
+
+use crate::support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
 
 const N: u64 = 40_000;
 const SEED: u64 = 20_05;

@@ -1,7 +1,7 @@
+use wayfix_encoded_image::compressed_message;
 use wayfix_estimation_traits::Pose2;
 
 use super::candidate::Candidate;
-use wayfix_encoded_image::compressed_message;
 
 use super::motion::planar;
 use super::transforms::{is_body, last_part};

@@ -4,9 +4,9 @@
 
 use crate::common;
 
-use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::PI;
 
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

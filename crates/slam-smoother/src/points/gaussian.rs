@@ -17,6 +17,23 @@ pub struct PointMapGaussian {
     pub covariance: DMatrix<f64>,
 }
 
+/// The residual of an uncertain start.
+pub(super) struct StartPrior {
+    /// Numbers of the variables that are not exact.
+    pub(super) variables: Vec<usize>,
+    /// Coordinates of their means.
+    pub(super) mean: Vec<f64>,
+    /// Information in their tangent spaces.
+    pub(super) information: DMatrix<f64>,
+}
+
+impl StartPrior {
+    /// Whether it is about one of these variables.
+    pub(super) fn names(&self, variables: &[usize]) -> bool {
+        self.variables.iter().any(|variable| variables.contains(variable))
+    }
+}
+
 /// Coordinates of robot and range scale.
 const ROBOT: usize = 4;
 
@@ -42,6 +59,16 @@ impl PointMapGaussian {
     /// Whether a block has no uncertainty.
     pub(super) fn is_exact(&self, (first, n): (usize, usize)) -> bool {
         (first..first + n).all(|k| self.covariance[(k, k)] == 0.0)
+    }
+
+    /// Coordinates of the means of the blocks that are not exact, in their order.
+    pub(super) fn uncertain_mean(&self) -> Vec<f64> {
+        let Pose2 { translation, .. } = self.pose;
+        let robot = [translation.x, translation.y, self.pose.heading(), self.log_range_scale];
+        let places = self.landmarks.iter().flat_map(|(_, place)| [place.x, place.y]);
+        let all: Vec<f64> = robot.into_iter().chain(places).collect();
+        let free = self.blocks().filter(|block| !self.is_exact(*block));
+        free.flat_map(|(first, n)| all[first..first + n].to_vec()).collect()
     }
 
     /// Information of the blocks that are not exact, in their order.

@@ -2,11 +2,14 @@
 
 mod export;
 mod gaussian;
+mod landmarks;
+mod measurements;
 mod params;
 mod residuals;
 mod smoother;
 
 pub use gaussian::PointMapGaussian;
+pub use measurements::Detection;
 pub use params::{PointSmootherParams, PoseObservation, SettledPose};
 pub use residuals::{AntennaPosition, Heading, MountedRangeBearing};
-pub use smoother::{Detection, PointSmoother};
+pub use smoother::PointSmoother;

@@ -1,33 +1,20 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Between, Graph, Kernel, Params, Prior, Variable, VariableId};
+use wayfix_smoother::{Between, Graph, Params, Variable, VariableId};
 
-use super::{
-    AntennaPosition, Heading, MountedRangeBearing, PointMapGaussian, PointSmootherParams, PoseObservation,
-    SettledPose, residuals::SamePoint,
-};
+use super::{PointMapGaussian, PointSmootherParams, SettledPose, gaussian::StartPrior};
 use crate::SlamSmootherError;
-
-/// A detection of a point whose landmark is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detection {
-    /// m.
-    pub range: f64,
-    /// rad, 0 ahead, counter-clockwise.
-    pub bearing: f64,
-    /// Covariance of range and bearing.
-    pub covariance: Matrix2<f64>,
-}
 
 /// Graph SLAM with points: a window of poses and the whole map, with the pairings of another.
 ///
 /// Poses that leave the window are marginalized; what they knew of the map stays. A wrong pairing weighs little (Cauchy) while it is in the
 /// window, and a landmark can be taken back.
 pub struct PointSmoother {
-    params: PointSmootherParams,
-    pub(super) log_range_scale_sigma: f64,
+    pub(super) params: PointSmootherParams,
+    /// What the graph holds of the start, until it is marginalized.
+    pub(super) start: Option<StartPrior>,
     pub(super) graph: Graph,
     pub(super) scale: VariableId<Vector1<f64>>,
     /// Poses in the window, oldest first.
@@ -35,7 +22,7 @@ pub struct PointSmoother {
     n_poses: usize,
     solved_at: Option<f64>,
     pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
-    anchors: BTreeSet<u32>,
+    pub(super) anchors: BTreeSet<u32>,
 }
 
 #[derive(Clone, Copy)]
@@ -46,14 +33,10 @@ pub(super) struct Frame {
     pub(super) pose: VariableId<Pose2<f64>>,
 }
 
-/// 95 % of the efficiency of least squares when there are no outliers.
-const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 /// What a motion is uncertain by at least, m and rad: motion models with fewer directions than three are singular.
 pub(super) const LEAST_MOTION_SIGMA: [f64; 3] = [1e-4, 1e-4, 1e-5];
-/// Two landmarks that are one are together to within this, m.
-const SAME: f64 = 1e-3;
 /// Online, a step follows a problem that was at its minimum: few iterations are left.
-const ONLINE: Params = Params {
+pub(super) const ONLINE: Params = Params {
     method: wayfix_smoother::Method::LevenbergMarquardt,
     max_iterations: 5,
     relative_decrease: 1e-6,
@@ -78,13 +61,16 @@ impl PointSmoother {
         for (_, landmark) in &landmarks {
             hold_if_exact(&mut graph, *landmark, start, blocks.next(), &mut uncertain)?;
         }
+        let mut prior = None;
         if !uncertain.is_empty() {
-            graph.add_gaussian(&uncertain, start.information()?)?;
+            let information = start.information()?;
+            graph.add_gaussian(&uncertain, information.clone())?;
+            prior = Some(StartPrior { variables: uncertain, mean: start.uncertain_mean(), information });
         }
         Ok(Self {
             solved_at: None,
             params,
-            log_range_scale_sigma: start.covariance[(3, 3)].sqrt(),
+            start: prior,
             graph,
             scale,
             window: VecDeque::from([Frame { number: 0, seconds: None, pose }]),
@@ -133,116 +119,6 @@ impl PointSmoother {
         Ok(number)
     }
 
-    /// Holds a landmark at a place that is known from now on; an anchor stays where it is.
-    ///
-    /// # Errors
-    /// Never while the smoother is whole.
-    pub fn add_anchor(&mut self, landmark: u32, place: Vector2<f64>) -> Result<(), SlamSmootherError> {
-        if !self.anchors.insert(landmark) {
-            return Ok(());
-        }
-        let id = *self.landmarks.entry(landmark).or_insert_with(|| self.graph.add_variable(place));
-        self.graph.set_value(id, place)?;
-        Ok(self.graph.fix(id)?)
-    }
-
-    /// Adds a detection from the newest pose. An unknown landmark starts where it is seen.
-    ///
-    /// # Errors
-    /// * [`SlamSmootherError::OutOfRange`] for a range that is not positive and finite.
-    /// * [`SlamSmootherError::Smoother`] for other numbers that are not finite.
-    pub fn detect(&mut self, landmark: u32, detection: &Detection) -> Result<(), SlamSmootherError> {
-        let Detection { range, bearing, covariance } = *detection;
-        let index = self.newest();
-        if !(range > 0.0 && range.is_finite() && bearing.is_finite()) {
-            let (what, wanted) = ("range of a detection from pose", "positive and finite, as its bearing");
-            return Err(SlamSmootherError::OutOfRange { what, index, value: range, wanted });
-        }
-        let information = inverse(&covariance, "covariance of a detection from pose", index)?;
-        let pose = self.last().pose;
-        let id = match self.landmarks.get(&landmark) {
-            Some(id) => *id,
-            None => {
-                let distance = range * (-self.graph.value(self.scale)?.x).exp();
-                let (sin, cos) = bearing.sin_cos();
-                let sensor = self.graph.value(pose)?.compose(&self.params.mount);
-                self.graph.add_variable(sensor.transform(&(Vector2::new(cos, sin) * distance)))
-            }
-        };
-        let residual = MountedRangeBearing { mount: self.params.mount, range, bearing };
-        match self.graph.add(residual, (pose, id, self.scale), information) {
-            Ok(added) => {
-                self.landmarks.insert(landmark, id);
-                Ok(self.graph.set_kernel(added, ROBUST)?)
-            }
-            Err(error) => {
-                if !self.landmarks.contains_key(&landmark) {
-                    self.graph.remove_variables(&[id.index()])?;
-                }
-                Err(error.into())
-            }
-        }
-    }
-
-    /// Adds a measurement of the pose that the robot has after a further motion from the newest one.
-    ///
-    /// # Errors
-    /// [`SlamSmootherError::Smoother`] for a covariance that is none, and numbers that are not finite.
-    pub fn observe(
-        &mut self,
-        observation: &PoseObservation,
-        motion: &Pose2<f64>,
-    ) -> Result<(), SlamSmootherError> {
-        let (pose, index) = (self.last().pose, self.newest());
-        let name = "covariance of a measured pose at pose";
-        let added = match *observation {
-            PoseObservation::Position { antenna, measured, covariance } => {
-                let residual = AntennaPosition { antenna: motion.transform(&antenna), measured };
-                self.graph.add(residual, (pose,), inverse(&covariance, name, index)?)?
-            }
-            PoseObservation::Heading { measured, variance } => {
-                let residual = Heading { measured: measured - motion.heading() };
-                self.graph.add(residual, (pose,), inverse(&variance, name, index)?)?
-            }
-            PoseObservation::Pose { measured, covariance } => {
-                let back = measured.compose(&motion.inverse());
-                let carry = motion.adjoint();
-                let covariance = carry * covariance * carry.transpose();
-                self.graph.add(Prior::new(back), (pose,), inverse(&covariance, name, index)?)?
-            }
-        };
-        Ok(self.graph.set_kernel(added, ROBUST)?)
-    }
-
-    /// Takes a landmark back, with its detections in the window.
-    ///
-    /// # Errors
-    /// [`SlamSmootherError::Smoother`] when what earlier poses knew of it cannot be marginalized.
-    pub fn remove(&mut self, landmark: u32) -> Result<(), SlamSmootherError> {
-        if let Some(id) = self.landmarks.get(&landmark).copied() {
-            self.graph.remove_variables(&[id.index()])?;
-            self.landmarks.remove(&landmark);
-            self.anchors.remove(&landmark);
-        }
-        Ok(())
-    }
-
-    /// Says that two landmarks are one.
-    ///
-    /// # Errors
-    /// [`SlamSmootherError::Smoother`] when they cannot be joined.
-    pub fn merge(&mut self, kept: u32, removed: u32) -> Result<(), SlamSmootherError> {
-        let (Some(a), Some(b)) = (self.landmarks.get(&kept).copied(), self.landmarks.get(&removed).copied())
-        else {
-            return Ok(());
-        };
-        self.graph.add(SamePoint, (a, b), Matrix2::identity() * SAME.powi(-2))?;
-        self.graph.optimize(&ONLINE)?;
-        self.graph.marginalize(&[b.index()])?;
-        self.landmarks.remove(&removed);
-        Ok(())
-    }
-
     /// Moves the window to its minimum and to a time, in s; the poses that left it. Does nothing without a lag, and before the period has passed.
     ///
     /// # Errors
@@ -264,7 +140,7 @@ impl PointSmoother {
         let dropped: Vec<usize> =
             self.window.drain(..settled.len()).map(|frame| frame.pose.index()).collect();
         if !dropped.is_empty() {
-            self.graph.marginalize(&dropped)?;
+            self.marginalize(&dropped)?;
         }
         Ok(settled)
     }
@@ -280,19 +156,6 @@ impl PointSmoother {
         self.settle(self.window.len(), self.params.lag.is_some())
     }
 
-    /// Landmarks, by identity.
-    pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
-        let place = |(id, variable): (&u32, &VariableId<Vector2<f64>>)| {
-            Some((*id, *self.graph.value(*variable).ok()?))
-        };
-        self.landmarks.iter().filter_map(place).collect()
-    }
-
-    /// Whether a landmark or anchor is in the map.
-    pub fn contains(&self, landmark: u32) -> bool {
-        self.landmarks.contains_key(&landmark)
-    }
-
     /// Number of poses in the window, and of residuals.
     pub fn size(&self) -> (usize, usize) {
         (self.window.len(), self.graph.n_residuals())
@@ -301,6 +164,12 @@ impl PointSmoother {
     /// Cost of the window, with what was marginalized.
     pub fn cost(&self) -> f64 {
         self.graph.cost()
+    }
+
+    pub(super) fn marginalize(&mut self, variables: &[usize]) -> Result<(), SlamSmootherError> {
+        self.graph.marginalize(variables)?;
+        self.start.take_if(|start| start.names(variables));
+        Ok(())
     }
 
     /// The oldest poses of the window as they are.
@@ -340,7 +209,7 @@ fn hold_if_exact<X: Variable>(
     Ok(())
 }
 
-fn inverse<const N: usize>(
+pub(super) fn inverse<const N: usize>(
     covariance: &nalgebra::SMatrix<f64, N, N>,
     what: &'static str,
     index: usize,

@@ -13,9 +13,12 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_slam_smoother::points::{
-    AntennaPosition, Detection, Heading, MountedRangeBearing, PointMapGaussian, PointSmoother,
-    PointSmootherParams, PoseObservation, SettledPose,
+use wayfix_slam_smoother::{
+    SlamSmootherError,
+    points::{
+        AntennaPosition, Detection, Heading, MountedRangeBearing, PointMapGaussian, PointSmoother,
+        PointSmootherParams, PoseObservation, SettledPose,
+    },
 };
 use wayfix_smoother::laws;
 
@@ -209,7 +212,7 @@ fn short_window_stays_bounded_and_near_the_truth() {
 fn export_has_a_line_for_each_variable_and_residual() {
     let (steps, _) = steps(40);
     let (batch, _) = run(None, &steps);
-    let text = batch.export();
+    let text = batch.export().unwrap();
     let count = |kind: &str| text.lines().filter(|line| line.split(' ').next() == Some(kind)).count();
     let n_detections: usize = steps.iter().map(|step| step.seen.len()).sum();
     assert_eq!([count("POSE"), count("LANDMARK"), count("LOG_SCALE")], [41, 8, 1]);
@@ -220,6 +223,26 @@ fn export_has_a_line_for_each_variable_and_residual() {
     assert_eq!(motion[2..5], [first.x(), first.y(), first.heading()]);
     assert_eq!(motion.len(), 11);
     assert_abs_diff_eq!(motion[5], 1.0 / (0.0004 + 1e-8), epsilon = 1e-6);
+    // The start is exact, its scale is not.
+    let start: Vec<f64> = text.lines().find(|line| line.starts_with("START")).map(numbers).unwrap();
+    assert_eq!((count("HELD"), start[..3].to_vec()), (1, vec![1.0, 1.0, 0.0]));
+    assert_abs_diff_eq!(start[3], 0.03_f64.powi(-2), epsilon = 1e-6);
+    let solution = batch.export_solution().unwrap();
+    let count = |kind: &str| solution.lines().filter(|line| line.starts_with(kind)).count();
+    assert_eq!((count("SOLUTION "), count("COST ")), (50, 1));
+    let cost: f64 = solution.lines().next().unwrap()[5..].parse().unwrap();
+    assert_eq!(cost, batch.cost());
+}
+
+#[test]
+fn export_of_other_residuals_is_refused_with_their_number() {
+    let (steps, _) = steps(40);
+    let (window, _) = run(Some(10.0), &steps);
+    assert_eq!(window.export(), Err(SlamSmootherError::NotExported { n_residuals: 1 }));
+    let (mut batch, _) = run(None, &steps);
+    let heading = PoseObservation::Heading { measured: 0.7, variance: Matrix1::new(1e-4) };
+    batch.observe(&heading, &Pose2::identity()).unwrap();
+    assert_eq!(batch.export(), Err(SlamSmootherError::NotExported { n_residuals: 1 }));
 }
 
 #[test]
@@ -253,11 +276,28 @@ fn landmark_that_is_taken_back_leaves_no_trace() {
 #[test]
 fn merged_landmarks_are_one() {
     let (steps, _) = steps(30);
-    let mut smoother = PointSmoother::new(params(Some(100.0)), &start()).unwrap();
+    let (whole, merged) = (run(Some(100.0), &steps).0, run_with_a_merge(Some(100.0), &steps));
+    assert!(!merged.contains(40));
+    assert!((merged.landmarks()[&4] - whole.landmarks()[&4]).norm() < 0.02);
+}
+
+#[test]
+fn batch_with_a_merge_equals_the_batch_without_the_split() {
+    let (steps, _) = steps(30);
+    let (whole, merged) = (run(None, &steps).0, run_with_a_merge(None, &steps));
+    assert_eq!(whole.size(), merged.size());
+    assert!(abs_diff_eq!(merged.cost() / whole.cost(), 1.0, epsilon = 1e-8));
+    assert!((merged.landmarks()[&4] - whole.landmarks()[&4]).norm() < 1e-4);
+    let n_lines = |smoother: &PointSmoother| smoother.export().unwrap().lines().count();
+    assert_eq!(n_lines(&whole), n_lines(&merged));
+}
+
+/// Landmark 4 is taken for a new one in the second half.
+fn run_with_a_merge(lag: Option<f64>, steps: &[Step]) -> PointSmoother {
+    let mut smoother = PointSmoother::new(params(lag), &start()).unwrap();
     for (k, step) in steps.iter().enumerate() {
         smoother.advance(step.motion, &noise(), None).unwrap();
         for (landmark, detection) in &step.seen {
-            // Landmark 4 is taken for a new one in the second half.
             let name = if *landmark == 4 && k >= 15 { 40 } else { *landmark };
             smoother.detect(name, detection).unwrap();
         }
@@ -265,9 +305,7 @@ fn merged_landmarks_are_one() {
     }
     smoother.merge(4, 40).unwrap();
     smoother.finish().unwrap();
-    let (whole, _) = run(Some(100.0), &steps);
-    assert!(!smoother.contains(40));
-    assert!((smoother.landmarks()[&4] - whole.landmarks()[&4]).norm() < 0.02);
+    smoother
 }
 
 #[test]

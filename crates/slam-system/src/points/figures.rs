@@ -4,10 +4,10 @@ use wayfix_evaluation::{
     errors::{align, landmark_errors, median_distance, rms_distance},
     report::{Metric, ReportRun},
 };
+use wayfix_slam_ekf::PositionSensor;
 
 use super::PointRun;
 use crate::slam::{FrontEnd, StampedEstimate, summary};
-use wayfix_slam_ekf::PositionSensor;
 
 /// The figures and events of a run, ready for the report.
 pub fn summarize(run: &mut PointRun) -> ReportRun {

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkId, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
-    RangeBearing, SlamError, SlamSnapshot, UpdateReport,
+    RangeBearing, SlamSnapshot, UpdateReport,
 };
 use wayfix_slam_smoother::{
     SlamSmootherError,
@@ -48,7 +48,7 @@ impl PointFollower {
     pub(super) fn wanted(
         params: &PointSlamParams,
         filter: &EkfSlam<PointSensor>,
-    ) -> Result<Option<Box<dyn SlamFollower<PointSensor>>>, SlamError> {
+    ) -> Result<Option<Box<dyn SlamFollower<PointSensor>>>, SlamSmootherError> {
         let is_batch = match params.smoothing {
             Smoothing::Off => return Ok(None),
             Smoothing::Reference => true,
@@ -63,10 +63,8 @@ impl PointFollower {
         };
         let mount = filter.model().0.mount;
         let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), period: PERIOD, mount };
-        let (what, value, asymmetry) = ("start of the smoother", start.covariance.diagonal().min(), 0.0);
-        let singular = |_| SlamError::NotACovariance { what, value, asymmetry };
         Ok(Some(Box::new(Self {
-            smoother: PointSmoother::new(smoother_params, &start).map_err(singular)?,
+            smoother: PointSmoother::new(smoother_params, &start)?,
             is_batch,
             is_graph_recorded: params.record_graph,
             motion: Pose2::identity(),
@@ -220,20 +218,21 @@ impl SlamFollower<PointSensor> for PointFollower {
     }
 
     fn finish(&mut self) -> Result<SmoothedRun, String> {
-        let graph = (self.is_batch && self.is_graph_recorded).then(|| self.smoother.export());
+        let mut graph = (self.is_batch && self.is_graph_recorded).then(|| self.smoother.export());
         self.try_to(|follower| {
             let settled = follower.smoother.finish()?;
             follower.settle(&settled);
+            if let Some(Ok(graph)) = &mut graph {
+                graph.push_str(&follower.smoother.export_solution()?);
+            }
             Ok(())
         });
-        match &self.failure {
-            Some(failure) => Err(failure.clone()),
-            None => Ok(SmoothedRun {
-                estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
-                landmarks: self.smoother.landmarks(),
-                is_batch: self.is_batch,
-                graph,
-            }),
-        }
+        self.failure.clone().map_or(Ok(()), Err)?;
+        Ok(SmoothedRun {
+            estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
+            landmarks: self.smoother.landmarks(),
+            is_batch: self.is_batch,
+            graph,
+        })
     }
 }

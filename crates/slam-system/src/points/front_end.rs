@@ -3,6 +3,7 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_sensor_log::{
     AckermannDrive, Detection, DetectionTarget, LogError, Record, RecordData, Stamp, Velocity,
 };
+use wayfix_slam_ekf::MotionStatistics;
 use wayfix_slam_ekf::{
     EkfSlam, ExternalParams, LandmarkId, MotionWithRangeScale, MountedSensor, Observation,
     PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, SequentialMotion,
@@ -14,8 +15,7 @@ use super::{
     MountingParams, OdometryRecordKind, PointSlamParams, commands::Commands, drawing,
     follower::PointFollower, state::PointFrontEndState,
 };
-use crate::slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis};
-use wayfix_slam_ekf::MotionStatistics;
+use crate::slam::{AssociationRule, FrontEnd, MotionEstimate, SavedMapError, SlamEstimator, SlamSystem, nis};
 
 /// Points seen by a range-bearing sensor that may sit anywhere on the robot and whose scale is estimated.
 pub type PointSensor = RangeBearingSensorWithScale<MountedSensor<RangeBearingSensor>>;
@@ -78,7 +78,7 @@ impl PointSystem {
     }
 
     /// Lets a smoother follow, if the parameters ask for one: from what an earlier one has saved, else from the state of the filter.
-    pub(super) fn follow(&mut self, saved: Option<SavedPoints>) -> Result<(), SlamError> {
+    pub(super) fn follow(&mut self, saved: Option<SavedPoints>) -> Result<(), SavedMapError> {
         let filter = &self.estimator.filter;
         let resume = |saved| EkfSlam::resume(*filter.model(), *filter.params(), saved);
         let saved = saved.map(resume).transpose()?;

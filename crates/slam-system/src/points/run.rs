@@ -3,7 +3,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePositions, align};
@@ -13,7 +13,7 @@ use wayfix_system_core::{
     EventCounts, ODOMETRY, OVERVIEW_HEAD, RunStep, System, TrueStartPose, check_overlap, warn_of_start,
 };
 
-use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
+use super::{OdometryRecordKind, PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose};
 
 /// The result of EKF-SLAM with points on a log; the true map has the landmarks by identity.
@@ -72,7 +72,11 @@ pub fn run_streamed<R: Borrow<Record>>(
     system.add_given_anchors(&params.anchors, seen.as_ref(), Vector2::from)?;
     let has_truth = !truth.is_empty() || true_positions.last_stamp().is_some();
     if params.smoothing == Smoothing::FixedLag || has_truth || params.record_graph {
-        system.follow(None)?; // else there is nothing to compare a batch with
+        // Else there is nothing to compare a batch with.
+        if let Err(error) = system.follow(None) {
+            ensure!(params.smoothing == Smoothing::Reference, error);
+            system.events().warn("smoother_failed", format!("no batch to compare with: {error}"));
+        }
     }
     drive_through(system, truth, overview, records, observe)
 }
@@ -177,9 +181,8 @@ fn fitted_start(mut pilot: PointSystem, records: &[Record], positions: &TruePosi
 }
 
 fn has_used_a_detection(events: &EventCounts) -> bool {
-    ["new_landmark", "observation_accepted", "observation_downweighted"]
-        .iter()
-        .any(|name| events.get(name) > 0)
+    let used = ["new_landmark", "observation_accepted", "observation_downweighted"];
+    used.iter().any(|name| events.get(name) > 0)
 }
 
 /// The first refusal and how many there were, or else what happened to the detections.
@@ -199,18 +202,12 @@ fn start_stamp(records: &[Record]) -> Option<Stamp> {
     let is_own = |record: &&Record| !matches!(record.data, RecordData::PoseMeasurement(_));
     let stamps = records.iter().filter(is_own).map(|record| record.stamp);
     let earlier = stamps.take_while(|stamp| *stamp < first.stamp).last();
-    match first.data {
-        RecordData::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
-        _ => Some(first.stamp),
-    }
+    let is_increment = matches!(first.data, RecordData::OdometryIncrement(_));
+    earlier.filter(|_| is_increment).or(Some(first.stamp))
 }
 
 fn odometry_stamp(record: &Record) -> Option<Stamp> {
-    matches!(
-        record.data,
-        RecordData::Velocity(_) | RecordData::Ackermann(_) | RecordData::OdometryIncrement(_)
-    )
-    .then_some(record.stamp)
+    OdometryRecordKind::of(&record.data).map(|_| record.stamp)
 }
 
 /// The requested rule, else by identity if there are identities.

@@ -1,12 +1,12 @@
 use nalgebra::{Matrix3, Vector2};
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{RecordData, Stamp, Velocity};
+use wayfix_slam_ekf::MotionStatistics;
 use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
 use wayfix_system_core::check_velocity;
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem};
 use crate::slam::{FrontEndState, SavedMapError, SlamState, Smoothing, check_association};
-use wayfix_slam_ekf::MotionStatistics;
 
 /// A map of points.
 pub type SavedPointMap = SlamState<PoseWithRangeScale, Vector2<f64>, PointFrontEndState>;

@@ -1,12 +1,13 @@
 use std::{collections::BTreeMap, time::Duration};
 
 use nalgebra::{DefaultAllocator, Matrix3, Vector2};
-use wayfix_estimation_traits::{Pose2, TangentMatrix};
+use wayfix_estimation_traits::{LieGroup, Pose2, TangentMatrix};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkDim, LandmarkModel, MapMeasurement, MeasurementDim, Observation, RobotDim, SlamAlloc,
     SlamSnapshot, UpdateReport,
 };
+use wayfix_slam_smoother::SlamSmootherError;
 
 use super::StampedEstimate;
 
@@ -28,7 +29,7 @@ where
     fn measured(&mut self, filter: &EkfSlam<M>, measurement: &MapMeasurement, motion: Pose2<f64>);
     /// The filter has an estimate at a stamp; computing time of the follower for it.
     fn estimated(&mut self, filter: &EkfSlam<M>, estimate: &StampedEstimate) -> Duration;
-    /// Its present estimate of robot and map, in the form of the filter; `None` for a batch, and after a failure.
+    /// Its present estimate of robot and map, in the form of the filter; `None` for a batch, after a failure, and if the window cannot be solved.
     fn save(&self, filter: &EkfSlam<M>) -> Option<SlamSnapshot<M::Robot, M::Landmark>>;
     /// Everything, when the log has ended.
     ///
@@ -44,8 +45,8 @@ pub struct SmoothedRun {
     pub estimates: Decimated<StampedEstimate>,
     /// Landmarks by identity.
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
-    /// The least squares problem of a batch before it is solved, if requested: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
-    pub graph: Option<String>,
+    /// The least squares problem of a batch and its solution, if requested: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
+    pub graph: Option<Result<String, SlamSmootherError>>,
     /// Whether it is a batch over the whole log that the filter is compared with, without covariances.
     pub is_batch: bool,
 }
@@ -64,7 +65,6 @@ pub enum Smoothing {
 
 /// $`\mathrm{Ad}_{m^{-1}} Σ \mathrm{Ad}_{m^{-1}}^T`$: a covariance transported along a motion.
 pub(crate) fn carried(covariance: &Matrix3<f64>, motion: &Pose2<f64>) -> Matrix3<f64> {
-    use wayfix_estimation_traits::LieGroup;
     let carry = motion.inverse().adjoint();
     carry * covariance * carry.transpose()
 }

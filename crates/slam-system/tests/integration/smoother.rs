@@ -115,17 +115,36 @@ fn saved_window_that_is_no_gaussian_is_refused() {
         with(|window| window.covariance.truncate(7)),
         with(|window| window.covariance[0] = -1.0),
         with(|window| window.covariance[1] = 1e6),
-        // Semidefinite is enough for a filter; the smoother inverts it.
-        with(|window| {
-            let n = 4 + 2 * window.landmarks.len();
-            window.set_covariance(&nalgebra::DMatrix::from_element(n, n, 1.0));
-        }),
     ] {
         let error = resume(bad).err().expect("no Gaussian").to_string();
         assert!(error.contains("not a state of the filter"), "{error}");
     }
+    // Semidefinite is enough for a filter; the smoother inverts it.
+    let semidefinite = with(|window| {
+        let n = 4 + 2 * window.landmarks.len();
+        window.set_covariance(&nalgebra::DMatrix::from_element(n, n, 1.0));
+    });
+    let error = resume(semidefinite).err().expect("no Gaussian").to_string();
+    assert!(error.contains("not a start of the smoother") && error.contains("positive definite"), "{error}");
     let of_filter = SavedPointMap { smoothed: None, ..half.clone() };
     assert_eq!(resume(of_filter).unwrap().events().get("smoother_starts_from_filter"), 1);
+}
+
+#[test]
+fn start_that_the_smoother_refuses_is_reported_with_its_reason() {
+    let (records, params) = loop_records(Smoothing::Off);
+    let anchors =
+        vec![AnchorParams { id: 1, at: [0.0, 0.0], covariance: Some([[0.01, 0.0], [0.0, 1e-310]]) }];
+    let run = |smoothing| {
+        let params = PointSlamParams { anchors: anchors.clone(), smoothing, ..params.clone() };
+        points::run(&records, &params, |_| {})
+    };
+    let error = run(Smoothing::FixedLag).err().expect("no finite information").to_string();
+    assert!(
+        error.contains("not a start of the smoother: the information of residual 0 is not finite"),
+        "{error}"
+    );
+    assert_eq!(run(Smoothing::Reference).expect("a filter").events().get("smoother_failed"), 1);
 }
 
 #[test]

@@ -1,9 +1,5 @@
-use nalgebra::{DMatrix, DVector};
-
 use super::{
     batch::{AnyBatch, Batch},
-    linear_prior::{LinearPrior, LinearPriors},
-    marginalize::{self, Marginalized},
     structure::Structure,
     values::Values,
 };
@@ -35,7 +31,7 @@ pub struct Graph {
     pub(crate) dims: Vec<usize>,
     pub(crate) batches: Vec<Box<dyn AnyBatch>>,
     /// Number of the next residual.
-    next_residual: usize,
+    pub(super) next_residual: usize,
     /// Ordering and symbolic factorization, kept until the graph changes.
     pub(crate) structure: Option<Structure>,
 }
@@ -184,121 +180,6 @@ impl Graph {
         Ok(())
     }
 
-    /// Takes variables back, by their numbers, with the residuals that name them; what earlier marginalizations say of them is marginalized.
-    ///
-    /// # Errors
-    /// As [`marginalize`](Self::marginalize).
-    pub fn remove_variables(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
-        marginalize::remove(self, variables)
-    }
-
-    /// Drops variables, by their numbers ([`VariableId::index`]), and keeps what their residuals say about the others.
-    ///
-    /// The residuals that name them are replaced by a quadratic in the other variables, about the present values: the Schur complement of the
-    /// dropped ones. Where these residuals are linear, nothing is lost; else their linearization, and the weight of their kernels, is final.
-    /// [Sibley et al. 2010, section 3.2; Dong-Si and Mourikis 2011]
-    ///
-    /// ```
-    /// use nalgebra::{Matrix1, Vector1};
-    /// use wayfix_smoother::{Graph, Params};
-    /// # use wayfix_smoother::Residual;
-    /// # struct Step(f64);
-    /// # impl Residual for Step {
-    /// #     type Dim = nalgebra::Const<1>;
-    /// #     type Variables = (Vector1<f64>, Vector1<f64>);
-    /// #     fn value(&self, (a, b): (&Vector1<f64>, &Vector1<f64>)) -> Vector1<f64> { b - a - Vector1::new(self.0) }
-    /// # }
-    /// let mut graph = Graph::new();
-    /// let [a, b, c] = [0.0, 0.9, 2.2].map(|x| graph.add_variable(Vector1::new(x)));
-    /// graph.fix(a)?;
-    /// graph.add(Step(1.0), (a, b), Matrix1::new(4.0))?; // the residual b - a - 1
-    /// graph.add(Step(1.0), (b, c), Matrix1::new(4.0))?;
-    /// let dropped = graph.marginalize(&[a.index(), b.index()])?;
-    /// assert_eq!((dropped.n_residuals, dropped.neighbours), (2, vec![c.index()]));
-    /// graph.optimize(&Params::default())?;
-    /// assert!((graph.value(c)?.x - 2.0).abs() < 1e-9 && graph.value(b).is_err());
-    /// # Ok::<(), wayfix_smoother::SmootherError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// * [`SmootherError::UnknownId`] for a number of no variable.
-    /// * [`SmootherError::IllConditioned`] when the others do not determine them.
-    /// * [`SmootherError::NotFinite`].
-    ///
-    /// The graph stays as it was.
-    pub fn marginalize(&mut self, variables: &[usize]) -> Result<Marginalized, SmootherError> {
-        marginalize::marginalize(self, variables)
-    }
-
-    /// Adds what is known of several variables together: a Gaussian about their present values, by its information in their tangent spaces.
-    ///
-    /// The variables are given by their numbers ([`VariableId::index`]); the rows of the information are their tangent coordinates in this order.
-    /// [`gaussian`](Self::gaussian) is the inverse.
-    ///
-    /// # Errors
-    /// As [`add`](Self::add).
-    pub fn add_gaussian(
-        &mut self,
-        variables: &[usize],
-        information: DMatrix<f64>,
-    ) -> Result<(), SmootherError> {
-        let residual = self.next_residual;
-        if !variables.iter().all(|variable| self.values.is_present(*variable)) {
-            return Err(SmootherError::UnknownId);
-        }
-        let repeated =
-            variables.iter().enumerate().find(|(place, index)| variables[..*place].contains(index));
-        if let Some((_, variable)) = repeated {
-            return Err(SmootherError::SelfConnection { variable: *variable });
-        }
-        let n = variables.iter().map(|variable| self.dims[*variable]).sum();
-        if information.shape() != (n, n) {
-            let (what, expected, got) = ("the information", (n, n), information.shape());
-            return Err(SmootherError::Shape { what, residual, expected, got });
-        }
-        information::check(information.as_slice(), residual)?;
-        let points = variables.iter().map(|variable| self.values.linear_point(*variable)).collect();
-        let (hessian, gradient) = ((&information + information.transpose()) * 0.5, DVector::zeros(n));
-        self.add_prior(LinearPrior {
-            variables: variables.to_vec(),
-            points,
-            hessian,
-            gradient,
-            constant: 0.0,
-        });
-        Ok(())
-    }
-
-    /// All residuals together as a Gaussian of some variables, given by their numbers: mean and covariance in the tangent spaces at the present values.
-    ///
-    /// The others are marginalized as by [`marginalize`](Self::marginalize), but the graph stays as it is. At a minimum the mean is zero; elsewhere it is
-    /// the Gauss–Newton step. Rows of fixed variables are zero.
-    ///
-    /// ```
-    /// use nalgebra::{DMatrix, Matrix1, Vector1};
-    /// use wayfix_smoother::Graph;
-    /// # use wayfix_smoother::Residual;
-    /// # struct Step(f64);
-    /// # impl Residual for Step {
-    /// #     type Dim = nalgebra::Const<1>;
-    /// #     type Variables = (Vector1<f64>, Vector1<f64>);
-    /// #     fn value(&self, (a, b): (&Vector1<f64>, &Vector1<f64>)) -> Vector1<f64> { b - a - Vector1::new(self.0) }
-    /// # }
-    /// let mut graph = Graph::new();
-    /// let [a, b] = [0.0, 0.9].map(|x| graph.add_variable(Vector1::new(x)));
-    /// graph.add_gaussian(&[a.index()], DMatrix::from_element(1, 1, 4.0))?; // a is 0 ± 0.5
-    /// graph.add(Step(1.0), (a, b), Matrix1::new(4.0))?; // the residual b - a - 1
-    /// let (mean, covariance) = graph.gaussian(&[b.index()])?;
-    /// assert!((mean[0] - 0.1).abs() < 1e-9 && (covariance[(0, 0)] - 0.5).abs() < 1e-9);
-    /// # Ok::<(), wayfix_smoother::SmootherError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`marginals`](Self::marginals), and [`SmootherError::UnknownId`].
-    pub fn gaussian(&self, variables: &[usize]) -> Result<(DVector<f64>, DMatrix<f64>), SmootherError> {
-        marginals::gaussian(self, variables)
-    }
-
     /// Number of variables, fixed ones included.
     pub fn n_variables(&self) -> usize {
         self.values.n_present()
@@ -352,20 +233,6 @@ impl Graph {
     /// As [`optimize`](Self::optimize).
     pub fn marginals(&mut self) -> Result<Marginals<'_>, SmootherError> {
         marginals::at_present(self)
-    }
-
-    /// Adds what a marginalization leaves.
-    pub(super) fn add_prior(&mut self, prior: LinearPrior) {
-        let found = self.batches.iter_mut().position(|batch| batch.as_any_mut().is::<LinearPriors>());
-        let batch = found.unwrap_or_else(|| {
-            self.batches.push(Box::new(LinearPriors::default()));
-            self.batches.len() - 1
-        });
-        if let Some(priors) = self.batches[batch].as_any_mut().downcast_mut::<LinearPriors>() {
-            priors.push(prior, self.next_residual);
-        }
-        self.next_residual += 1;
-        self.structure = None;
     }
 
     pub(crate) fn cost_at(&self, values: &Values, mu: f64) -> f64 {

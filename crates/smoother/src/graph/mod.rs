@@ -3,6 +3,7 @@
 pub(crate) mod batch;
 pub(crate) mod dense_quadratic;
 mod factor_graph;
+mod gaussian;
 pub(crate) mod keys;
 mod linear_prior;
 mod marginalize;

@@ -1,11 +1,12 @@
 use std::time::Duration;
 
-use super::{CmlRun, CmlTask, CmlViewResult};
 use wayfix_evaluation::{
     errors::PoseWithTruth,
     report::{Metric, ReportRun},
 };
 use wayfix_system_core::System;
+
+use super::{CmlRun, CmlTask, CmlViewResult};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut CmlRun) -> ReportRun {

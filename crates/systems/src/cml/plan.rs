@@ -1,15 +1,15 @@
 use anyhow::{Result, ensure};
 use wayfix_appearance_cml::{AzimuthDirection, MapLearning, OmnidirectionalRing, PanoramaDescriptorParams};
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::errors::ReferencePath;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_system_core::{HeldVelocity, IncrementPlausibilityCheck, check_velocity};
+use wayfix_table_log::{HeadingSource, PosedFrame, PosedFrameFolder, poses};
 
 use super::{
     CmlParams, ViewDescriptorReader, synthetic_odometry,
     turn_evidence::{AzimuthDirectionEvidence, turn_evidence},
 };
-use wayfix_evaluation::errors::ReferencePath;
-use wayfix_table_log::{HeadingSource, PosedFrame, PosedFrameFolder, poses};
 
 /// Contents of a run: the training views, and the records to process after training.
 #[derive(Clone, Debug, Default)]

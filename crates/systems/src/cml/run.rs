@@ -7,14 +7,13 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_appearance_cml::StartPosePrior;
 use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
 use wayfix_system_core::{
     ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay,
 };
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
-
-use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 use wayfix_color_map::ColorId;
-use wayfix_system_core::System;
-
-use super::{ClassificationCounts, ColorRun, rate_of};
 use wayfix_evaluation::{
     errors::MeanInterval,
     report::{Metric, ReportRun},
 };
+use wayfix_system_core::System;
+
+use super::{ClassificationCounts, ColorRun, rate_of};
 
 /// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;

@@ -3,13 +3,13 @@ use std::sync::Arc;
 use anyhow::Result;
 use wayfix_color_model::LightingFilter;
 use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::plot::{
+    CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, NamedEllipse, RasterMap, SvgPlot,
+};
 use wayfix_sensor_log::Stamp;
 use wayfix_system_core::MOST_ESTIMATES;
 
 use super::{ColorRun, ColorSystem, field_lines, uv_ellipses};
-use wayfix_evaluation::plot::{
-    CovarianceEllipsesPlot, FilmStrip, FilmStripFrame, NamedEllipse, RasterMap, SvgPlot,
-};
 
 /// Frames of the film; each represents a part of the run.
 const N_FRAMES: usize = 6;

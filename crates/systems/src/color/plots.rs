@@ -3,9 +3,6 @@ use std::borrow::Borrow;
 use anyhow::Result;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::{LightingFilter, YuvImage};
-use wayfix_sensor_log::{EncodedImage, Record, RecordData};
-
-use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
     errors::PoseWithTruth,
     plot::{
@@ -13,6 +10,9 @@ use wayfix_evaluation::{
         PoseErrorSample, SvgPlot, named_color,
     },
 };
+use wayfix_sensor_log::{EncodedImage, Record, RecordData};
+
+use super::{ColorFrameResult, ColorRun, field_lines};
 
 /// Plots the path on the field, errors with 3σ bands, and the number of particles over time. [Schulz & Fox 2004, Fig. 3]
 ///

@@ -7,6 +7,7 @@ use rand_distr::StandardNormal;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingFilterBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_system_core::TrueStartPose;
 use wayfix_system_core::{
@@ -15,7 +16,6 @@ use wayfix_system_core::{
 };
 
 use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose, totals::ColorTotals};
-use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {

@@ -1,9 +1,9 @@
 use nalgebra::Vector2;
-
-use super::{LineExtractionSystem, ScanWalls, truth::squared_distances};
 use wayfix_evaluation::plot::{AxisScale, ConsistencyPlot, MapPlot, PlotError, SvgPlot, wall_band};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_line_extract::WallSegment;
+
+use super::{LineExtractionSystem, ScanWalls, truth::squared_distances};
 
 /// Number of scans drawn, spread evenly over the log.
 const N_SCANS: usize = 3;

@@ -1,12 +1,12 @@
 use std::{convert::Infallible, time::Duration};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 use wayfix_system_core::{EventCounts, Stopwatch, System, max_echo_range};
 
 use super::totals::LineTotals;
-use wayfix_evaluation::plot::Decimated;
 
 /// Extracts the walls of every scan of a log.
 pub struct LineExtractionSystem {

@@ -1,8 +1,9 @@
 use std::time::Duration;
 
-use super::TrackRun;
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_system_core::System;
+
+use super::TrackRun;
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut TrackRun) -> ReportRun {

@@ -1,7 +1,7 @@
 use wayfix_condensation::ActionSelection;
+use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 use super::{ViewTrial, ViewsRun};
-use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 /// Compares greedy and informed choice of actions on the same drives, with equal starts and goals.
 ///

@@ -1,12 +1,12 @@
 use std::collections::BTreeMap;
 
 use wayfix_condensation::{DiscreteStateSpace, LearnedMotion, NavigationOutcome};
-
-use super::{ViewTrial, ViewsRun};
 use wayfix_evaluation::{
     errors::proportion_interval,
     report::{Metric, ReportRun},
 };
+
+use super::{ViewTrial, ViewsRun};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &ViewsRun) -> ReportRun {

@@ -2,10 +2,10 @@ use std::cmp::Reverse;
 
 use anyhow::Result;
 use wayfix_condensation::{PositionGrid, RgbImage, StateDescriptorTable};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
 use super::{DescriptorKind, ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
-use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinePlot, PlotSeries, SvgPlot};
 
 /// Moves after which the belief is shown, besides the last.
 const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];

@@ -1,10 +1,10 @@
 use std::net::{IpAddr, SocketAddr};
 
 use anyhow::Result;
+use wayfix_evaluation::terminal::print_message;
 use wayfix_sensor_log::FoxgloveMessageSink;
 
 use crate::live::{LiveServer, PlaybackPace};
-use wayfix_evaluation::terminal::print_message;
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]

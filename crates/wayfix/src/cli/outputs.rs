@@ -5,10 +5,6 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{LogFormat, McapMessageSink, MessageSinks};
-use wayfix_system_core::{EstimateDrawer, EstimateRecorder};
-
-use super::{common::Common, live::Live};
 use wayfix_evaluation::{
     plot::SvgPlot,
     report::{
@@ -16,6 +12,10 @@ use wayfix_evaluation::{
         table::TableStyle,
     },
 };
+use wayfix_sensor_log::{LogFormat, McapMessageSink, MessageSinks};
+use wayfix_system_core::{EstimateDrawer, EstimateRecorder};
+
+use super::{common::Common, live::Live};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";

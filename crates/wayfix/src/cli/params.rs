@@ -4,14 +4,14 @@ use anyhow::Result;
 use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::Serialize;
+use wayfix_evaluation::terminal::print;
 use wayfix_slam_system::{
     points::{PointSlamParams, RobotProfile},
     walls::WallSlamParams,
 };
+use wayfix_systems::{cml::CmlParams, color::ColorSystemParams, track::TrackParams, views::ViewsParams};
 
 use crate::commented::{commented, schema_of};
-use wayfix_evaluation::terminal::print;
-use wayfix_systems::{cml::CmlParams, color::ColorSystemParams, track::TrackParams, views::ViewsParams};
 
 /// Print the parameters of a system with their defaults, units and descriptions: a template for `--params`.
 ///

@@ -1,8 +1,8 @@
+use wayfix_evaluation::terminal::print_message;
 use wayfix_sensor_log::{Log, LogCompleteness, LogError, LogWarning, ReadReport, Record, RecordData};
 use wayfix_system_core::{EventCounts, LogOverview};
 
 use super::run::interrupt;
-use wayfix_evaluation::terminal::print_message;
 
 /// Reads all records of a log; prints read problems and assumptions.
 pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {

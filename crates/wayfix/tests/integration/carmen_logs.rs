@@ -4,8 +4,9 @@
 
 use std::fs;
 
-use crate::common::{Outcome, Scratch, wayfix};
 use wayfix_estimation_traits::{LieGroup, Pose2};
+
+use crate::common::{Outcome, Scratch, wayfix};
 
 /// Where the laser is ahead of the robot, m.
 const AHEAD: f64 = 0.4;

@@ -2,8 +2,9 @@
 
 use std::{fs, path::Path};
 
-use crate::common::{Scratch, run_slam, utias_walk, walk, walk_without_truth, wayfix};
 use wayfix_sensor_log::{LogFormat, LogOpenOptions, Record, open, write};
+
+use crate::common::{Scratch, run_slam, utias_walk, walk, walk_without_truth, wayfix};
 
 const ALWAYS: [&str; 5] = ["n_landmarks", "n_rejected", "step_mean_us", "step_median_us", "step_max_us"];
 const WITH_TRUTH: [&str; 6] = [

@@ -7,9 +7,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::common::{Scratch, wayfix as call};
 use clap::Command;
 use wayfix::cli;
+
+use crate::common::{Scratch, wayfix as call};
 
 /// Where a command line stands, and itself.
 struct Line {

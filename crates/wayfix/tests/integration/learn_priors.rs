@@ -3,11 +3,12 @@
 
 use std::{fs, path::Path};
 
-use crate::common::{Outcome, Scratch, wayfix};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use wayfix_color_map::ColorId;
 use wayfix_color_model::{LightingPriors, YuvStandard};
 use wayfix_sensor_log::EncodedImage;
+
+use crate::common::{Outcome, Scratch, wayfix};
 
 /// A stripe of 16 columns for each colour.
 const STRIPE: u32 = 16;

@@ -10,13 +10,14 @@ use std::{
     time::Duration,
 };
 
-use crate::common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_slam_system::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
 use wayfix_slam_system::slam::{AssociationRule, SavedMapError, Smoothing};
 use wayfix_system_core::RunStep;
+
+use crate::common::{Outcome, Scratch, run_slam, utias_walk, walk};
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;
@@ -171,6 +172,25 @@ fn a_forged_state_never_panics() {
         }
         assert!(n_refused > 0, "some forgeries must be found");
     }
+}
+
+#[test]
+fn a_window_that_cannot_be_saved_is_reported_by_the_run() {
+    let scratch = Scratch::new();
+    let of_filter = PointSlamParams::of(RobotProfile::RangeBearing);
+    let params = PointSlamParams { smoothing: Smoothing::FixedLag, ..of_filter };
+    let log = records(&scratch.file("walk.txt", walk(12)));
+    let mut state = run(&log, &params, |_| {}).unwrap().system.save();
+    // A landmark that the filter has, the window has not, and no robot sees again.
+    state.filter.landmarks.last_mut().unwrap().id.0 = 9_999;
+    let map = scratch.path("floor.map");
+    state.write(&map).unwrap();
+    let map = map.to_str().unwrap();
+    let more = ["--estimator", "smoother", "--resume", map, "--save", map, "--save-every", "0.5"];
+    let later = run_slam(&scratch.file("later.txt", walk(40)), &more);
+    assert!(later.event("smoother_window_not_saved") > 3, "{}", later.stdout);
+    assert!(later.stderr.contains("saved of the filter alone"), "{}", later.stderr);
+    assert!(SavedPointMap::read(Path::new(map)).unwrap().smoothed.is_none());
 }
 
 /// The process is ended by SIGKILL at a random moment of saving without a pause.

@@ -4,8 +4,9 @@
 
 use std::{fs, path::PathBuf};
 
-use crate::common::{Outcome, wayfix};
 use wayfix_sensor_log::{LogFormat, LogOpenOptions, Record, RecordData, Stamp, Velocity, open, write};
+
+use crate::common::{Outcome, wayfix};
 
 /// A drive in a room of 8 m by 6 m, recorded with the Python package rosbags (xtask/clients/ros_bags.py): the laser hangs head down, turned
 /// by 0.5 rad, and odometry says 5 % too much.

@@ -3,15 +3,15 @@
 #![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
 use approx::abs_diff_eq;
+use nalgebra::{Vector2, Vector3};
 use std::{
     f64::consts::{FRAC_PI_2, TAU},
     fmt::Write,
     path::{Path, PathBuf},
 };
+use wayfix_estimation_traits::{LieGroup, Pose2};
 
 use crate::common::{Scratch, run_slam, wayfix};
-use nalgebra::{Vector2, Vector3};
-use wayfix_estimation_traits::{LieGroup, Pose2};
 
 /// Seconds between looks; fixes come with them, odometry eight times as often.
 const PERIOD: f64 = 0.2;

@@ -2,20 +2,20 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use serde::Deserialize;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_sensor_log::LogOpenOptions;
 use wayfix_system_core::{RunStep, System};
+use wayfix_systems::cml::{
+    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem,
+    CmlTask, PanoramaMap, ViewDescriptorReader,
+};
+use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
 use super::super::PlannedJob;
 use crate::{
     cml::{self as experiments, CmlExperimentSetup},
     thinned_positions::ThinnedPositions,
 };
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::cml::{
-    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem,
-    CmlTask, PanoramaMap, ViewDescriptorReader,
-};
-use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

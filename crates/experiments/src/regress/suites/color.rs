@@ -1,19 +1,20 @@
 use std::{ops::Range, path::PathBuf, sync::Arc};
 
-use crate::color::{self as experiments, TrainingHalls};
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_color_map::ColorMap;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_scene_sim::{
     Scenario, ScenarioParams,
     league::{ExposureMode, LampSetting, LeagueParams},
 };
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_system_core::{RunStep, System};
+use wayfix_systems::color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors};
+
+use crate::color::{self as experiments, TrainingHalls};
 
 use super::super::PlannedJob;
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

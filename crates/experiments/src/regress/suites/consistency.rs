@@ -1,5 +1,6 @@
 use anyhow::Result;
 use serde::Deserialize;
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_scene_sim::monobot::MonobotParams;
 use wayfix_sensor_log::LogOpenOptions;
 
@@ -8,7 +9,6 @@ use crate::{
     consistency::{self, ConsistencyMonteCarlo, CorridorLaps},
     monobot::{self, WorldReference},
 };
-use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

@@ -1,13 +1,13 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_sensor_log::LogOpenOptions;
 use wayfix_system_core::{RunStep, System, drive};
+use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 use super::super::PlannedJob;
 use crate::simplification::simplification;
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

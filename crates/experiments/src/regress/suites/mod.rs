@@ -9,9 +9,9 @@ mod track;
 mod views;
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::report::ReportRun;
 
 use super::PlannedJob;
-use wayfix_evaluation::report::ReportRun;
 
 /// Does one run.
 pub(super) type Runner = fn(&PlannedJob<'_>) -> Result<ReportRun>;

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Deserialize;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_sensor_log::{LogOpenOptions, read_relations};
 use wayfix_slam_system::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
@@ -12,7 +13,6 @@ use wayfix_system_core::RunStep;
 
 use super::super::PlannedJob;
 use crate::thinned_positions::ThinnedPositions;
-use wayfix_evaluation::report::ReportRun;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

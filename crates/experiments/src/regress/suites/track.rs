@@ -1,18 +1,19 @@
 use std::path::PathBuf;
 
-use crate::films;
 use anyhow::{Context, Result};
 use serde::Deserialize;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 use wayfix_system_core::RunStep;
-
-use super::super::PlannedJob;
-use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::track::{
     self, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
 };
 use wayfix_visual_tracking::{ColorSpace, HeadDetector};
+
+use crate::films;
+
+use super::super::PlannedJob;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]

@@ -5,12 +5,13 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transforms};
-use crate::common::cdr::Encoder;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
     LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, RowProblemKind, open,
 };
+
+use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transforms};
+use crate::common::cdr::Encoder;
 
 const SECOND: u64 = 1_000_000_000;
 const MOUNT: [f64; 3] = [0.2, 0.1, 0.0];

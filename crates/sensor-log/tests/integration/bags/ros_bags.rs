@@ -1,19 +1,19 @@
 //! ROS 2 bags from beginning to end: one that the Python package rosbags wrote, and some of our own making.
 
 use approx::assert_abs_diff_eq;
+use mcap::WriteOptions;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
-
-use crate::common::bag::{
-    Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, odometry_with, pose, read, scan, transforms, twist,
-};
-use mcap::WriteOptions;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
     LogCompleteness, LogError, LogFormat, LogOpenOptions, LogSummary, Record, RecordData, RowProblemKind,
     TopicUse, convert, open,
+};
+
+use crate::common::bag::{
+    Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, odometry_with, pose, read, scan, transforms, twist,
 };
 
 const DRIVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/ros2_drive.mcap");

@@ -5,11 +5,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::bag::{Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, scan, transforms};
 use wayfix_sensor_log::{
     LogCompleteness, LogError, LogFormat, LogOpenOptions, ReadReport, Record, RecordData, Stamp, Velocity,
     open, open_all, write,
 };
+
+use crate::common::bag::{Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, scan, transforms};
 
 const STEPS: i32 = 40;
 const SECOND: u64 = 1_000_000_000;

@@ -1,6 +1,7 @@
 use std::{io, path::PathBuf};
 
 use wayfix_slam_ekf::SlamError;
+use wayfix_slam_smoother::SlamSmootherError;
 
 /// Why a saved map could not be written, or cannot be gone on with.
 #[derive(Debug, thiserror::Error)]
@@ -57,4 +58,7 @@ pub enum SavedMapError {
     /// The filter refuses what the map holds.
     #[error("not a state of the filter: {0}")]
     State(#[from] SlamError),
+    /// The smoother refuses to start from it.
+    #[error("not a start of the smoother: {0}")]
+    Start(#[from] SlamSmootherError),
 }

@@ -1,9 +1,9 @@
+use wayfix_evaluation::plot::Decimated;
 use wayfix_sensor_log::{EncodedImage, ImageError};
 use wayfix_visual_tracking::{TargetEstimate, TrackStatus};
 
 use super::super::{TargetColorDistribution, TargetTruth, TrackFrameResult};
 use super::overlay;
-use wayfix_evaluation::plot::Decimated;
 
 /// Maximum number of film frames.
 const MOST_FRAMES: usize = 12;

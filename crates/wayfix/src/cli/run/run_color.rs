@@ -4,8 +4,12 @@ use anyhow::{Context, Result, ensure};
 use wayfix_color_model::LightingPriors;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::terminal::{self, print};
+use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
+use wayfix_systems::color::{
+    self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors,
+};
 
 use super::super::{
     common::Common,
@@ -16,10 +20,6 @@ use super::super::{
 };
 use super::interrupt;
 use crate::commented::commented;
-use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
-use wayfix_systems::color::{
-    self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors,
-};
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
 ///

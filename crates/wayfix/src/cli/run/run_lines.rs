@@ -1,10 +1,12 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, ensure};
+use wayfix_evaluation::report::ReportRun;
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_line_extract::LineExtractionParams;
 use wayfix_sensor_log::{LogFormat, LogOpenOptions};
 use wayfix_system_core::{RunStep, Stopwatch, System, drive};
+use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 use super::super::{
     common::Common,
@@ -14,8 +16,6 @@ use super::super::{
 };
 use super::interrupt;
 use crate::commented::commented;
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 /// Walls: the straight segments in every laser scan of a log, with their ends.
 ///

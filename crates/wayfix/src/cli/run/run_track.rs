@@ -7,19 +7,19 @@ use std::{
 };
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::report::ReportRun;
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_sensor_log::{Log, LogFormat, LogOpenOptions};
 use wayfix_system_core::{RunStep, Stopwatch, System, settings::from_toml};
+use wayfix_systems::track::{
+    self, InitialTargetRegion, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig,
+    TrackingMethod, TrueBoxes, parse_box,
+};
 use wayfix_visual_tracking::{BoundingBox, HeadDetector};
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
 use super::interrupt;
 use crate::commented::commented;
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::track::{
-    self, InitialTargetRegion, TrackEstimateRecorder, TrackParams, TrackSystem, TrackerConfig,
-    TrackingMethod, TrueBoxes, parse_box,
-};
 
 /// Tracking: estimates the position of a target in every image, from its position in the first one.
 ///

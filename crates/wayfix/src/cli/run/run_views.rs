@@ -7,18 +7,18 @@ use std::{
 use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
 use wayfix_condensation::{ActionSelection, LightChange, RgbImage, shifted};
+use wayfix_evaluation::report::ReportRun;
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_system_core::{Stopwatch, settings::from_toml};
-
-use super::super::{common::Common, input::read_toml, outputs::Outputs};
-use super::interrupt;
-use crate::commented::commented;
-use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::views::{
     self, DescriptorKind, LightNormalization, LoggedDrawing, LoggedViews, RealSceneTransform, ViewSystem,
     ViewSystemConfig, ViewsParams, ViewsRun,
 };
 use wayfix_table_log::{MoveTable, MovedFrameFolder};
+
+use super::super::{common::Common, input::read_toml, outputs::Outputs};
+use super::interrupt;
+use crate::commented::commented;
 
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
 ///

@@ -2,13 +2,13 @@
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
-use std::{ffi::OsStr, fs, path::PathBuf};
-
-use crate::common::{Scratch, wayfix};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::{ffi::OsStr, fs, path::PathBuf};
 use wayfix_estimation_traits::LieGroup;
 use wayfix_sensor_log::{EncodedImage, LogFormat, RecordData};
+
+use crate::common::{Scratch, wayfix};
 
 use super::cml_drive::{Drive, frames_run, log_run, run_cml};
 

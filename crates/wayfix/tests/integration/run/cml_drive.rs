@@ -3,7 +3,6 @@
 
 use std::{ffi::OsStr, fmt::Write, fs, path::PathBuf};
 
-use crate::common::{Outcome, Scratch, wayfix};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
@@ -12,6 +11,8 @@ use wayfix_scene_sim::{
     random::RandomStreams,
 };
 use wayfix_sensor_log::{EncodedImage, LogFormat, Record, RecordData, Stamp};
+
+use crate::common::{Outcome, Scratch, wayfix};
 
 pub(crate) const WORLD_SEED: u64 = 5;
 pub(crate) const LAPS: usize = 2;

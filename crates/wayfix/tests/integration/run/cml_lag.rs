@@ -3,8 +3,9 @@
 
 use std::path::PathBuf;
 
-use crate::common::Scratch;
 use wayfix_sensor_log::{LogFormat, RecordData, Stamp};
+
+use crate::common::Scratch;
 
 use super::cml_drive::{Drive, log_run};
 

@@ -4,9 +4,10 @@
 
 use std::{ffi::OsStr, fmt::Write, fs, path::PathBuf};
 
-use crate::common::{Outcome, Scratch, wayfix};
 use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_sensor_log::EncodedImage;
+
+use crate::common::{Outcome, Scratch, wayfix};
 
 const N_FRAMES: usize = 16;
 

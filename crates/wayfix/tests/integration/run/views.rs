@@ -2,8 +2,9 @@
 
 use std::{ffi::OsStr, fs, io::Cursor, path::Path};
 
-use crate::common::{Outcome, Scratch, wayfix};
 use image::{DynamicImage, GrayImage, ImageFormat, Rgb, RgbImage};
+
+use crate::common::{Outcome, Scratch, wayfix};
 
 const WIDTH: u32 = 256;
 const HEIGHT: u32 = 192;

@@ -1,9 +1,9 @@
 use anyhow::Result;
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::views::{self, DescriptorKind, ViewsParams};
 
 use super::{scenes::Scenes, settings::Settings};
 use crate::regress::PlannedJob;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::views::{self, DescriptorKind, ViewsParams};
 
 /// Greedy and informed actions on the same drives through a composed scene.
 pub(super) fn choices(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {

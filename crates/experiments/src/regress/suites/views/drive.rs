@@ -1,9 +1,9 @@
 use anyhow::Result;
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::views::{self, DescriptorKind, ViewSystem, ViewSystemConfig};
 
 use super::{scenes::Scenes, settings::Settings};
 use crate::regress::PlannedJob;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::views::{self, DescriptorKind, ViewSystem, ViewSystemConfig};
 
 /// The paper's features with every normalization, on one scene. Figures are named after both; pictures are those of the last.
 pub(super) fn drive(

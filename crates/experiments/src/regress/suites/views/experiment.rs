@@ -1,4 +1,5 @@
 use anyhow::Result;
+use wayfix_evaluation::report::ReportRun;
 
 use super::{
     choices::choices,
@@ -8,7 +9,6 @@ use super::{
     tables::tables,
 };
 use crate::regress::PlannedJob;
-use wayfix_evaluation::report::ReportRun;
 
 /// An experiment with views.
 pub(in crate::regress::suites) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {

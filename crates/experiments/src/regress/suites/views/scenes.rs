@@ -1,10 +1,10 @@
 use anyhow::Result;
 use wayfix_condensation::{RgbImage, shifted};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
+use wayfix_systems::views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig};
 
 use super::settings::{ImagingConditionsKind, Settings};
 use crate::regress::PlannedJob;
-use wayfix_systems::views::{self, DescriptorKind, LightNormalization, RealSceneTransform, ViewSystemConfig};
 
 /// The learned scene and the real one, and their views.
 pub(super) struct Scenes {

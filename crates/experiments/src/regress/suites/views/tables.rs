@@ -1,10 +1,10 @@
 use anyhow::Result;
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::views::{self, LightNormalization, ViewSystem, ViewSystemConfig};
 
 use super::{drive::drive, scenes::Scenes, settings::Settings};
 use crate::PaperSceneRows;
 use crate::regress::PlannedJob;
-use wayfix_evaluation::report::{Metric, ReportRun};
-use wayfix_systems::views::{self, LightNormalization, ViewSystem, ViewSystemConfig};
 
 /// The paper's three tables on a composed scene. [Kasprzak & Szynkiewicz, Tables 1–3] Its figures are compared with ours for the whole-scene
 /// normalization, which it assumes.

@@ -5,13 +5,13 @@ use std::{
 
 use wayfix_appearance_cml::{AzimuthDirection, OmnidirectionalRing, RingVerticalOrientation};
 use wayfix_estimation_traits::Pose2;
+use wayfix_systems::cml::CmlTask;
+use wayfix_table_log::PoseTableColumns;
 
 use crate::cli::{
     common::Common,
     input::{Topics, name_of},
 };
-use wayfix_systems::cml::CmlTask;
-use wayfix_table_log::PoseTableColumns;
 
 /// Appearance maps: learn places by panoramic images, and localize in the map.
 ///

@@ -3,8 +3,14 @@
 mod arguments;
 
 use std::{borrow::Cow, path::Path, process::ExitCode};
+use wayfix_evaluation::report::ReportRun;
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
+use wayfix_systems::cml::{
+    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
+    PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
+};
+use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{
@@ -24,12 +30,6 @@ use super::super::{
 };
 use super::interrupt;
 use crate::commented::commented;
-use wayfix_evaluation::report::ReportRun;
-use wayfix_systems::cml::{
-    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
-    PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
-};
-use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {
