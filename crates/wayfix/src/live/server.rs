@@ -22,7 +22,7 @@ const GRACE: Duration = Duration::from_secs(2);
 /// It is read-only: viewers cannot change or publish anything.
 /// ```
 /// use wayfix::live::{LiveServerError, LiveServer, PlaybackPace};
-/// # use wayfix_systems::{points::PointSlamFrontEnd, slam::SlamEstimateRecorder};
+/// # use wayfix_slam_system::{points::PointSlamFrontEnd, slam::SlamEstimateRecorder};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
 /// let estimates = SlamEstimateRecorder::<PointSlamFrontEnd>::new(vec![server.sink(PlaybackPace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
