@@ -5,7 +5,7 @@ use wayfix_sensor_log::{LogWarning, Stamp};
 /// Event counts by kind, and the first unusable records.
 ///
 /// ```
-/// use wayfix_record_checks::EventCounts;
+/// use wayfix_system_core::EventCounts;
 /// use wayfix_sensor_log::Stamp;
 /// let mut events = EventCounts::default();
 /// events.at_record(7, Stamp::from_nanoseconds(5_000_000_000));
