@@ -59,7 +59,7 @@ impl EncodedImage {
         Ok(DecodedImage { width: image.width(), height: image.height(), pixels: image.into_raw() })
     }
 
-    /// Decodes the labels in [`RecordData::TrueLabels`](crate::RecordData::TrueLabels): the bytes of a grey PNG, without conversion.
+    /// Decodes the labels of an image: the bytes of a grey PNG, without conversion.
     /// # Errors
     /// Returns the errors of [`decode_rgb`](Self::decode_rgb), and an error if the image is not a PNG of eight grey bits.
     pub fn decode_labels(&self) -> Result<DecodedImage, ImageError> {
