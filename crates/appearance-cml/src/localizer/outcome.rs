@@ -38,6 +38,8 @@ pub struct ViewUpdateOutcome {
     pub estimate: Option<Gaussian<Pose2<f64>>>,
     /// Number of places that match the view.
     pub n_detections: usize,
-    /// The pose at which this view alone matches the map best, with covariance in its body frame: a measurement without odometry, for other estimators.
+    /// The pose at which this view matches the map best, with covariance in its body frame, before fusion: a measurement for other estimators.
+    ///
+    /// The belief limits the search, and at the border of the map it chooses the side. Matches with the same references share the errors of their poses.
     pub best_match: Option<Gaussian<Pose2<f64>>>,
 }

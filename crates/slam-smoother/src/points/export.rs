@@ -91,7 +91,7 @@ impl PointSmoother {
         let n_exported = self.graph.residuals::<Between<Pose2<f64>>>().count()
             + self.graph.residuals::<MountedRangeBearing>().count()
             + usize::from(self.start.is_some());
-        match self.graph.n_residuals() - n_exported {
+        match self.graph.n_residuals().saturating_sub(n_exported) {
             0 => Ok(()),
             n_residuals => Err(SlamSmootherError::NotExported { n_residuals }),
         }

@@ -1,7 +1,4 @@
-use nalgebra::Matrix3;
-use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{LogError, MeasuredQuantity, PoseMeasurement, Record, RecordData, topics};
+use wayfix_sensor_log::{LogError, Record, RecordData, topics};
 use wayfix_system_core::{EstimateDrawer, EstimateRecorder, EstimateWriter, PathSegmentWriter, write_pose};
 
 use super::CmlSystem;
@@ -35,8 +32,8 @@ impl EstimateDrawer for CmlDrawingState {
             self.path.push(stamp, &pose, writer)?;
             write_pose(writer, stamp, &pose)?;
         }
-        if let Some(matched) = &frame.best_match {
-            writer.record(&Record { stamp, data: RecordData::PoseMeasurement(measurement(matched)) })?;
+        if let Some(measured) = frame.pose_measurement() {
+            writer.record(&Record { stamp, data: RecordData::PoseMeasurement(measured) })?;
         }
         if self.n_written >= self.next_map {
             self.next_map = self.n_written + PERIOD.max(self.n_written / PERIOD_SHARE);
@@ -47,18 +44,5 @@ impl EstimateDrawer for CmlDrawingState {
             writer.point_cloud("/estimate/references", stamp, world, &points)?;
         }
         Ok(())
-    }
-}
-
-/// A matched pose as a measurement for another camera's run. [Gross et al. 2005, Fig. 2, other estimators]
-///
-/// The covariance turns from the body frame into the axes of the map.
-pub fn measurement(matched: &Gaussian<Pose2<f64>>) -> PoseMeasurement {
-    let mut rotation = Matrix3::identity();
-    rotation.fixed_view_mut::<2, 2>(0, 0).copy_from(&matched.mean().rotation_matrix());
-    PoseMeasurement {
-        frame: topics::WORLD_FRAME.to_owned(),
-        quantity: MeasuredQuantity::Pose(*matched.mean()),
-        covariance: Some(rotation * matched.covariance() * rotation.transpose()),
     }
 }

@@ -18,7 +18,7 @@ mod turn_evidence;
 
 pub use wayfix_evaluation::plot::histogram;
 
-pub use estimates::{CmlDrawingState, CmlEstimateRecorder, measurement};
+pub use estimates::{CmlDrawingState, CmlEstimateRecorder};
 pub use figures::{summarize, task};
 pub use odometry::synthetic_odometry;
 pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use wayfix_appearance_cml::{
     AppearanceIndex, AppearanceLocalizer, AppearanceMap, LocalizerEvent, PanoramaDescriptor, ReferenceSearch,
     StartPosePrior, ViewDescriptor,
@@ -8,7 +8,7 @@ use wayfix_appearance_cml::{
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
+use wayfix_sensor_log::{EncodedImage, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, topics};
 use wayfix_system_core::{
     EventCounts, HeldVelocity, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
     check_velocity,
@@ -56,12 +56,28 @@ pub struct CmlViewResult {
     pub nearest: Option<(f64, [f64; 2])>,
     /// Number of places that match the view.
     pub n_detections: usize,
-    /// The pose at which the view alone matches the map best.
+    /// The pose at which the view matches the map best, before fusion.
     pub best_match: Option<Gaussian<Pose2<f64>>>,
     /// Number of references in the map after the view.
     pub n_references: usize,
     /// Computing time after decoding.
     pub step: Duration,
+}
+
+impl CmlViewResult {
+    /// The best match as a measured pose for the run of another camera. [Gross et al. 2005, Fig. 2, other estimators]
+    ///
+    /// The covariance turns from the body frame into the axes of the map.
+    pub fn pose_measurement(&self) -> Option<PoseMeasurement> {
+        let matched = self.best_match.as_ref()?;
+        let mut rotation = Matrix3::identity();
+        rotation.fixed_view_mut::<2, 2>(0, 0).copy_from(&matched.mean().rotation_matrix());
+        Some(PoseMeasurement {
+            frame: topics::WORLD_FRAME.to_owned(),
+            quantity: MeasuredQuantity::Pose(*matched.mean()),
+            covariance: Some(rotation * matched.covariance() * rotation.transpose()),
+        })
+    }
 }
 
 impl CmlSystem {

@@ -146,7 +146,7 @@ fn a_second_camera_corrects_the_first() {
     let matched = cml::run(system, &plan, CmlTask::LearnThenLocalize, start, &params, 1, |_| {});
     let matched = matched.expect("usable views");
     let measurements = matched.system.frames().iter().filter_map(|frame| {
-        let data = RecordData::PoseMeasurement(cml::measurement(frame.best_match.as_ref()?));
+        let data = RecordData::PoseMeasurement(frame.pose_measurement()?);
         Some(Record { stamp: frame.stamp, data })
     });
     let first = of_camera(&records, 0);
