@@ -34,7 +34,7 @@ impl PointSmoother {
         lines.push(format!("LOG_SCALE {} {}", self.scale.index(), self.graph.value(self.scale)?.x));
         lines.extend(self.held().map(|held| format!("HELD {held}")));
         lines.extend(self.start.as_ref().map(StartPrior::line));
-        for (motion, named, m) in self.graph.residuals::<Between<Pose2<f64>>>() {
+        for (_, motion, named, m) in self.graph.residuals::<Between<Pose2<f64>>>() {
             let information = format!("{} {} {} {} {} {}", m.m11, m.m12, m.m13, m.m22, m.m23, m.m33);
             lines.push(format!(
                 "MOTION {} {} {} {information}",
@@ -43,7 +43,7 @@ impl PointSmoother {
                 numbers(motion.measured())
             ));
         }
-        for (detection, named, m) in self.graph.residuals::<MountedRangeBearing>() {
+        for (_, detection, named, m) in self.graph.residuals::<MountedRangeBearing>() {
             let MountedRangeBearing { mount, range, bearing } = detection;
             let ids = format!("{} {} {}", named[0], named[1], named[2]);
             let information = format!("{} {} {}", m.m11, m.m12, m.m22);

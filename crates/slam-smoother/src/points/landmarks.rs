@@ -82,10 +82,11 @@ impl PointSmoother {
     ) -> Result<(), SlamSmootherError> {
         let poses: BTreeMap<_, _> =
             self.window.iter().map(|frame| (frame.pose.index(), frame.pose)).collect();
-        let of_landmark = |(seen, named, information): (&MountedRangeBearing, &[usize], &Matrix2<f64>)| {
-            (named[1] == from.index()).then_some((*seen, *poses.get(&named[0])?, *information))
-        };
-        let detections: Vec<_> = self.graph.residuals().filter_map(of_landmark).collect();
+        let residuals = self.graph.residuals::<MountedRangeBearing>();
+        let of_landmark = residuals.filter(|(_, _, named, _)| named[1] == from.index());
+        let detections: Vec<_> = of_landmark
+            .filter_map(|(_, seen, named, information)| Some((*seen, *poses.get(&named[0])?, *information)))
+            .collect();
         for (detection, pose, information) in detections {
             let added = self.graph.add(detection, (pose, to, self.scale), information)?;
             self.graph.set_kernel(added, ROBUST)?;

@@ -1,9 +1,10 @@
-//! Points seen in range and bearing, with given pairings, in a window of time or in one batch.
+//! Points seen in range and bearing, in a window of time or in one batch.
 
 mod export;
 mod gaussian;
 mod landmarks;
 mod measurements;
+mod pairing;
 mod params;
 mod residuals;
 mod smoother;

@@ -10,6 +10,8 @@ pub struct PointSmootherParams {
     pub period: f64,
     /// Pose of the sensor in the robot frame.
     pub mount: Pose2<f64>,
+    /// Whether a detection in the window may become one of another landmark; not where the sensor reads identities. A batch keeps the pairings.
+    pub pairs_anew: bool,
 }
 
 /// A measurement of the pose by a sensor that does not use the map.

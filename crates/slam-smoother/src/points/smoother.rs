@@ -7,10 +7,11 @@ use wayfix_smoother::{Between, Graph, Params, Variable, VariableId};
 use super::{PointMapGaussian, PointSmootherParams, SettledPose, gaussian::StartPrior};
 use crate::SlamSmootherError;
 
-/// Graph SLAM with points: a window of poses and the whole map, with the pairings of another.
+/// Graph SLAM with points: a window of poses and the whole map.
 ///
-/// Poses that leave the window are marginalized; what they knew of the map stays. A wrong pairing weighs little (Cauchy) while it is in the
-/// window, and a landmark can be taken back.
+/// Poses that leave the window are marginalized; what they knew of the map stays. Detections come with the landmarks that another estimator pairs
+/// them with. While a detection is in the window, a wrong pairing weighs little (Cauchy), and it can be taken back
+/// ([`PointSmootherParams::pairs_anew`]), as a landmark can.
 pub struct PointSmoother {
     pub(super) params: PointSmootherParams,
     /// What the graph holds of the start, until it is marginalized.
@@ -23,6 +24,7 @@ pub struct PointSmoother {
     solved_at: Option<f64>,
     pub(super) landmarks: BTreeMap<u32, VariableId<Vector2<f64>>>,
     pub(super) anchors: BTreeSet<u32>,
+    n_paired_anew: usize,
 }
 
 #[derive(Clone, Copy)]
@@ -77,6 +79,7 @@ impl PointSmoother {
             n_poses: 1,
             landmarks: landmarks.into_iter().collect(),
             anchors: BTreeSet::new(),
+            n_paired_anew: 0,
         })
     }
 
@@ -133,7 +136,7 @@ impl PointSmoother {
             return Ok(Vec::new());
         }
         self.solved_at = Some(seconds);
-        self.graph.optimize(&ONLINE)?;
+        self.solve(&ONLINE)?;
         let is_old = |frame: &&Frame| frame.seconds.is_some_and(|at| at < seconds - lag);
         let n_old = self.window.iter().take_while(is_old).count();
         let settled = self.settle(n_old.min(self.window.len() - 1), true)?;
@@ -151,9 +154,14 @@ impl PointSmoother {
     /// [`SlamSmootherError::Smoother`] when it cannot be solved.
     pub fn finish(&mut self) -> Result<Vec<SettledPose>, SlamSmootherError> {
         if self.graph.n_residuals() > 0 {
-            self.graph.optimize(&Params::default())?;
+            self.solve(&Params::default())?;
         }
         self.settle(self.window.len(), self.params.lag.is_some())
+    }
+
+    /// Number of detections that were given another landmark since the start.
+    pub fn n_paired_anew(&self) -> usize {
+        self.n_paired_anew
     }
 
     /// Number of poses in the window, and of residuals.
@@ -164,6 +172,19 @@ impl PointSmoother {
     /// Cost of the window, with what was marginalized.
     pub fn cost(&self) -> f64 {
         self.graph.cost()
+    }
+
+    /// Moves the window to its minimum, and to that with better pairings.
+    fn solve(&mut self, params: &Params) -> Result<(), SlamSmootherError> {
+        self.graph.optimize(params)?;
+        if self.params.lag.is_some() && self.params.pairs_anew {
+            let n_changed = self.pair_anew()?;
+            self.n_paired_anew += n_changed;
+            if n_changed > 0 {
+                self.graph.optimize(params)?;
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn marginalize(&mut self, variables: &[usize]) -> Result<(), SlamSmootherError> {

@@ -8,83 +8,18 @@
 )]
 
 use approx::{abs_diff_eq, assert_abs_diff_eq};
-use nalgebra::{DMatrix, Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Normal};
+use nalgebra::{DMatrix, Matrix1, Matrix2, Matrix3, Vector1, Vector2};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_slam_smoother::{
     SlamSmootherError,
     points::{
         AntennaPosition, Detection, Heading, MountedRangeBearing, PointMapGaussian, PointSmoother,
-        PointSmootherParams, PoseObservation, SettledPose,
+        PoseObservation, SettledPose,
     },
 };
 use wayfix_smoother::laws;
 
-const MOUNT: [f64; 3] = [0.4, -0.1, 0.7];
-
-fn params(lag: Option<f64>) -> PointSmootherParams {
-    let [x, y, heading] = MOUNT;
-    PointSmootherParams { lag, period: 1.0, mount: Pose2::new(x, y, heading) }
-}
-
-fn start() -> PointMapGaussian {
-    PointMapGaussian::without_landmarks(Pose2::identity(), &Matrix3::zeros(), 0.03)
-}
-
-struct Step {
-    motion: Pose2<f64>,
-    seen: Vec<(u32, Detection)>,
-}
-
-/// A second a step, round a circle, among landmarks.
-fn steps(n: usize) -> (Vec<Step>, Vec<Pose2<f64>>) {
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let mut noise = |sigma: f64| Normal::new(0.0, sigma).unwrap().sample(&mut rng);
-    let landmarks: Vec<_> =
-        (0..8).map(|k| Vector2::new(2.0 + 4.0 * (k as f64).cos(), 3.0 + 5.0 * (k as f64).sin())).collect();
-    let (mut truth, mut steps) = (vec![Pose2::identity()], Vec::new());
-    let step = Pose2::new(0.5, 0.0, 0.15);
-    for k in 0..n {
-        let robot = truth[k].compose(&step);
-        truth.push(robot);
-        let motion = step.compose(&Pose2::exp(&Vector3::new(noise(0.02), noise(0.02), noise(0.01))));
-        let [x, y, heading] = MOUNT;
-        let sensor = robot.compose(&Pose2::new(x, y, heading));
-        let seen = landmarks.iter().enumerate().filter(|(id, _)| (id + k) % 3 == 0);
-        let seen = seen.map(|(id, landmark)| {
-            let seen = sensor.inverse_transform(landmark);
-            let covariance = Matrix2::new(0.0025, 0.0, 0.0, 0.0004);
-            let (range, bearing) = (1.02 * seen.norm() + noise(0.05), seen.y.atan2(seen.x) + noise(0.02));
-            (id as u32, Detection { range, bearing, covariance })
-        });
-        steps.push(Step { motion, seen: seen.collect() });
-    }
-    (steps, truth)
-}
-
-fn noise() -> Matrix3<f64> {
-    Matrix3::from_diagonal(&Vector3::new(0.0004, 0.0004, 0.0001))
-}
-
-fn run(lag: Option<f64>, steps: &[Step]) -> (PointSmoother, Vec<SettledPose>) {
-    let mut smoother = PointSmoother::new(params(lag), &start()).unwrap();
-    let mut settled = Vec::new();
-    for (k, step) in steps.iter().enumerate() {
-        settled.extend(take(&mut smoother, k, step));
-    }
-    settled.extend(smoother.finish().unwrap());
-    (smoother, settled)
-}
-
-fn take(smoother: &mut PointSmoother, k: usize, step: &Step) -> Vec<SettledPose> {
-    smoother.advance(step.motion, &noise(), None).unwrap();
-    for (landmark, detection) in &step.seen {
-        smoother.detect(*landmark, detection).unwrap();
-    }
-    smoother.step(k as f64).unwrap()
-}
+use crate::circle::{MOUNT, Step, noise, params, run, start, steps, take};
 
 fn gaussian(smoother: &PointSmoother) -> PointMapGaussian {
     let (landmarks, still) = (smoother.landmarks().into_keys(), Matrix3::zeros());

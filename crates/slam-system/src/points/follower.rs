@@ -14,7 +14,7 @@ use wayfix_slam_smoother::{
 use wayfix_system_core::{MOST_ESTIMATES, Stopwatch};
 
 use super::{PointSensor, PointSlamParams};
-use crate::slam::{SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried};
+use crate::slam::{AssociationRule, SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried};
 
 /// Poses older than this are final, s.
 const LAG: f64 = 60.0;
@@ -23,7 +23,7 @@ const PERIOD: f64 = 1.0;
 /// Runs with more poses have no batch to compare with.
 const MAX_BATCH_POSES: usize = 20_000;
 
-/// The smoother of points behind EKF-SLAM: motions and pairings come from the filter.
+/// The smoother of points behind EKF-SLAM: motions and first pairings come from the filter.
 pub(super) struct PointFollower {
     smoother: PointSmoother,
     is_batch: bool,
@@ -47,6 +47,7 @@ impl PointFollower {
     /// The follower that the parameters request; it starts from the state of a filter.
     pub(super) fn wanted(
         params: &PointSlamParams,
+        rule: AssociationRule,
         filter: &EkfSlam<PointSensor>,
     ) -> Result<Option<Box<dyn SlamFollower<PointSensor>>>, SlamSmootherError> {
         let is_batch = match params.smoothing {
@@ -62,7 +63,12 @@ impl PointFollower {
             covariance: filter.covariance(),
         };
         let mount = filter.model().0.mount;
-        let smoother_params = PointSmootherParams { lag: (!is_batch).then_some(LAG), period: PERIOD, mount };
+        let smoother_params = PointSmootherParams {
+            lag: (!is_batch).then_some(LAG),
+            period: PERIOD,
+            mount,
+            pairs_anew: rule != AssociationRule::Known,
+        };
         Ok(Some(Box::new(Self {
             smoother: PointSmoother::new(smoother_params, &start)?,
             is_batch,
@@ -206,6 +212,7 @@ impl SlamFollower<PointSensor> for PointFollower {
 
     fn save(&self, filter: &EkfSlam<PointSensor>) -> Option<SlamSnapshot<PoseWithRangeScale, Vector2<f64>>> {
         let mut saved = filter.snapshot();
+        saved.landmarks.retain(|landmark| self.smoother.contains(landmark.id.0));
         let ids = saved.landmarks.iter().map(|landmark| landmark.id.0);
         let is_whole = !self.is_batch && self.failure.is_none();
         let window = is_whole.then(|| self.smoother.gaussian(ids, &self.motion, &self.covariance))?.ok()?;
@@ -232,6 +239,7 @@ impl SlamFollower<PointSensor> for PointFollower {
             estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
             landmarks: self.smoother.landmarks(),
             is_batch: self.is_batch,
+            n_paired_anew: self.smoother.n_paired_anew(),
             graph,
         })
     }

@@ -83,7 +83,8 @@ impl PointSystem {
         let resume = |saved| EkfSlam::resume(*filter.model(), *filter.params(), saved);
         let saved = saved.map(resume).transpose()?;
         let start = saved.as_ref().unwrap_or(filter);
-        self.estimator.follower = PointFollower::wanted(&self.front_end.params, start)?;
+        let rule = self.association();
+        self.estimator.follower = PointFollower::wanted(&self.front_end.params, rule, start)?;
         Ok(())
     }
 

@@ -11,7 +11,7 @@ use wayfix_slam_smoother::SlamSmootherError;
 
 use super::StampedEstimate;
 
-/// A second estimator that takes the motions and pairings of EKF-SLAM.
+/// A second estimator that takes the motions of EKF-SLAM, and its pairings at first.
 pub(crate) trait SlamFollower<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -47,6 +47,8 @@ pub struct SmoothedRun {
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
     /// The least squares problem of a batch and its solution, if requested: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
     pub graph: Option<Result<String, SlamSmootherError>>,
+    /// Number of detections that the smoother paired with another landmark than the filter.
+    pub n_paired_anew: usize,
     /// Whether it is a batch over the whole log that the filter is compared with, without covariances.
     pub is_batch: bool,
 }

@@ -85,6 +85,7 @@ where
                     self.system.estimator.stamped_estimates =
                         std::mem::replace(&mut smoothed.estimates, Decimated::new(0));
                 }
+                self.system.events().add("detection_paired_anew", smoothed.n_paired_anew as u64);
                 self.smoothed = Some(smoothed);
             }
             Err(reason) => {

@@ -100,9 +100,12 @@ impl<R: Residual> Batch<R> {
         Ok(())
     }
 
-    pub(crate) fn entries(&self) -> impl Iterator<Item = (&R, &[usize], &Information<R>)> {
-        let named = self.keys.iter().map(|keys| &keys.indices[..R::Variables::ARITY]);
-        self.residuals.iter().zip(named).zip(&self.information).map(|((r, named), omega)| (r, named, omega))
+    /// Numbers, residuals, numbers of their variables, and information.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (usize, &R, &[usize], &Information<R>)> {
+        self.indices.iter().enumerate().map(|(slot, index)| {
+            let named = &self.keys[slot].indices[..R::Variables::ARITY];
+            (*index, &self.residuals[slot], named, &self.information[slot])
+        })
     }
 
     /// Numbers grow from slot to slot.

@@ -190,12 +190,22 @@ impl Graph {
         self.batches.iter().map(|batch| batch.len()).sum()
     }
 
+    /// Whether a variable, by its number, is neither held nor named by any residual.
+    pub fn is_without_residual(&self, variable: usize) -> bool {
+        let mut named = self.batches.iter().flat_map(|batch| batch.variables()).flatten();
+        !self.fixed[variable] && !named.any(|index| *index == variable)
+    }
+
     /// The residuals of a type in the order of adding, with the numbers of their variables and their information.
-    pub fn residuals<R: Residual>(&self) -> impl Iterator<Item = (&R, &[usize], &Information<R>)> {
-        self.batches
-            .iter()
-            .filter_map(|batch| batch.as_any().downcast_ref::<Batch<R>>())
-            .flat_map(Batch::entries)
+    pub fn residuals<R: Residual>(
+        &self,
+    ) -> impl Iterator<Item = (ResidualId, &R, &[usize], &Information<R>)> {
+        self.batches.iter().enumerate().flat_map(|(batch, residuals)| {
+            let typed = residuals.as_any().downcast_ref::<Batch<R>>().into_iter();
+            typed.flat_map(Batch::entries).map(move |(index, residual, named, information)| {
+                (ResidualId { batch, index }, residual, named, information)
+            })
+        })
     }
 
     /// $`\sum ρ(r^T Ω r)`$ at the present values.

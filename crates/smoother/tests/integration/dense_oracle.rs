@@ -113,11 +113,11 @@ fn covariances_of_a_larger_graph_equal_the_dense_inverse() {
     };
     let (graph, poses, landmarks) = (&world.graph, &world.poses, &world.landmarks);
     let pose = |index: usize| graph.value(poses[index]).unwrap();
-    for (motion, named, information) in graph.residuals::<Between<Pose2<f64>>>() {
+    for (_, motion, named, information) in graph.residuals::<Between<Pose2<f64>>>() {
         let (a, b) = motion.jacobians((pose(named[0]), pose(named[1])));
         add(named, [a.dynamic(), b.dynamic()], information.dynamic());
     }
-    for (seen, named, information) in graph.residuals::<RelativePosition<Vector2<f64>>>() {
+    for (_, seen, named, information) in graph.residuals::<RelativePosition<Vector2<f64>>>() {
         let landmark = graph.value(landmarks[named[1] - n_poses]).unwrap();
         let (a, b) = seen.jacobians((pose(named[0]), landmark));
         add(named, [a.dynamic(), b.dynamic()], information.dynamic());

@@ -108,7 +108,7 @@ pub(in crate::cli) struct Arguments {
 pub(in crate::cli) enum EstimatorName {
     /// Extended Kalman filter.
     Ekf,
-    /// Sparse least squares: a window of 60 s for points, with the pairings of the filter; one batch for ranges without bearings.
+    /// Sparse least squares: a window of 60 s for points, in which pairings of the filter can be taken back; one batch for ranges without bearings.
     Smoother,
 }
 
