@@ -17,7 +17,7 @@ use wayfix_slam_system::{
         SlamState, SlamSystem, Smoothing, StateOf,
     },
 };
-use wayfix_system_core::{EventCounts, RunStep, Stopwatch};
+use wayfix_system_core::{RunStep, Stopwatch};
 
 use super::super::{
     common::Common,
@@ -208,18 +208,13 @@ where
     let mut estimates: Option<SlamEstimateRecorder<F>> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| PeriodicStateSaver::new(path, arguments.save_every));
-    let mut n_without_window = 0;
     let bar = terminal::bar(n_records, "EKF-SLAM");
     let slam = run(&mut |RunStep { system, record, next, stop }: RunStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
-            saver.observe(record, next, || {
-                let state = system.save();
-                n_without_window += usize::from(state.smoothed.is_none());
-                state
-            });
+            saver.observe(record, next, || system.save());
         }
         stop.set(interrupt::is_requested());
         bar.inc(1);
@@ -227,12 +222,7 @@ where
     bar.finish_and_clear();
     let mut slam = slam?;
     if let Some(saver) = saver {
-        let state = slam.system.save();
-        saver.finish(&state).context("cannot save the map")?;
-        n_without_window += usize::from(state.smoothed.is_none());
-        if arguments.estimator == EstimatorName::Smoother {
-            warn_of_unsaved_windows(slam.events(), n_without_window);
-        }
+        saver.finish(&slam.system.save()).context("cannot save the map")?;
     }
     if let Some(path) = &arguments.graph_out {
         let graph = slam.smoothed.as_ref().and_then(|smoothed| smoothed.graph.as_ref());
@@ -266,14 +256,6 @@ impl Arguments {
             SlamState::read(path).with_context(|| format!("cannot go on from {}", path.display()))
         };
         self.resume.as_ref().map(read).transpose()
-    }
-}
-
-/// The window of the smoother could not be solved when the map was saved.
-fn warn_of_unsaved_windows(events: &mut EventCounts, n: usize) {
-    for _ in 0..n {
-        let text = "a map was saved of the filter alone: the window of the smoother could not be solved";
-        events.warn("smoother_window_not_saved", text);
     }
 }
 
