@@ -9,7 +9,6 @@ use crate::{ColorId, PixelSpan, RenderError};
 /// let labels = LabelImage::from_codes(2, 2, &[0, 1, 3, 3])?;
 /// assert_eq!(labels.get(1, 0), Some(ColorId(0)));
 /// assert_eq!(labels.count(ColorId(2)), 2);
-/// assert_eq!(labels.to_codes(), [0, 1, 3, 3]);
 /// # Ok::<(), wayfix_color_map::RenderError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,11 +38,6 @@ impl LabelImage {
             height,
             pixels: codes.iter().map(|&code| code.checked_sub(1).map(ColorId)).collect(),
         })
-    }
-
-    /// The labels as bytes, row by row from the top.
-    pub fn to_codes(&self) -> Vec<u8> {
-        self.pixels.iter().map(|pixel| pixel.map_or(0, |color| color.0 + 1)).collect()
     }
 
     /// Columns.

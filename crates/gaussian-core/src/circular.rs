@@ -9,7 +9,7 @@ use crate::GaussianError;
 /// use wayfix_estimation_traits::Angle;
 /// use wayfix_gaussian_core::CircularMoments;
 /// let degrees = |d: f64| Angle::new(d.to_radians());
-/// let moments = CircularMoments::from_angles(&[degrees(350.0), degrees(10.0)])?;
+/// let moments = CircularMoments::from_weighted(&[degrees(350.0), degrees(10.0)], &[1.0, 1.0])?;
 /// assert!(moments.mean_direction().is_some_and(|mean| mean.radians().abs() < 1e-15)); // not 180
 /// assert!((moments.resultant_length() - 10.0_f64.to_radians().cos()).abs() < 1e-15);
 /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
@@ -21,14 +21,6 @@ pub struct CircularMoments {
 }
 
 impl CircularMoments {
-    /// Of directions with equal weights.
-    ///
-    /// # Errors
-    /// Returns an error if there are none or one is not finite.
-    pub fn from_angles<T: RealField + Copy>(angles: &[Angle<T>]) -> Result<Self, GaussianError> {
-        Self::of(angles.iter().map(|&angle| (angle, 1.0)))
-    }
-
     /// Of weighted directions; weights need not be normalized.
     ///
     /// # Errors
@@ -37,19 +29,13 @@ impl CircularMoments {
         angles: &[Angle<T>],
         weights: &[f64],
     ) -> Result<Self, GaussianError> {
-        crate::gaussian::check_dimension("weights", angles.len(), weights.len())?;
-        Self::of(angles.iter().copied().zip(weights.iter().copied()))
-    }
-
-    fn of<T: RealField + Copy>(
-        weighted: impl ExactSizeIterator<Item = (Angle<T>, f64)>,
-    ) -> Result<Self, GaussianError> {
-        let count = weighted.len();
+        let count = angles.len();
+        crate::gaussian::check_dimension("weights", count, weights.len())?;
         if count == 0 {
             return Err(GaussianError::Empty { what: "angles" });
         }
         let (mut cos, mut sin, mut sum) = (0.0, 0.0, 0.0);
-        for (index, (angle, weight)) in weighted.enumerate() {
+        for (index, (angle, &weight)) in angles.iter().zip(weights).enumerate() {
             if !(weight >= 0.0 && weight.is_finite()) {
                 return Err(GaussianError::Weight { index, value: weight });
             }

@@ -1,5 +1,5 @@
 use super::{Decal, Layer, MapExtent, Prism, check};
-use crate::{ColorId, ColorMapError, ColoredShape, tree::Tree};
+use crate::{ColorMapError, ColoredShape, tree::Tree};
 
 /// A validated map of coloured surfaces.
 ///
@@ -12,7 +12,7 @@ use crate::{ColorId, ColorMapError, ColoredShape, tree::Tree};
 /// let corner = |x, y| Vector3::new(x, y, 0.0);
 /// let carpet = |color| ColoredShape::Polygon { color, vertices: vec![corner(0.0, 0.0), corner(4.0, 0.0), corner(0.0, 3.0)] };
 /// let map = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(0))])?;
-/// assert_eq!(map.color_named("green"), Some(ColorId(0)));
+/// assert_eq!(map.colors()[0], "green");
 /// assert_eq!(map.extent().unwrap().max, Vector3::new(4.0, 3.0, 0.0));
 ///
 /// let unknown = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(7))]);
@@ -66,12 +66,6 @@ impl ColorMap {
     /// The names of the colours.
     pub fn colors(&self) -> &[String] {
         &self.colors
-    }
-
-    /// The colour of this name.
-    pub fn color_named(&self, name: &str) -> Option<ColorId> {
-        let index = self.colors.iter().position(|color| color == name)?;
-        u8::try_from(index).ok().map(ColorId)
     }
 
     /// The shapes, as given.

@@ -15,8 +15,7 @@ where
     /// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
     /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
     /// let mixture = GaussianMixture::from_weights(vec![(0.7, at(0.0)?), (0.2, at(1.0)?), (0.1, at(2.0)?)])?;
-    /// assert_eq!(mixture.clone().prune(0.15)?.len(), 2);
-    /// assert_eq!(mixture.cap(1)?.components()[0].mean()[0], 0.0);
+    /// assert_eq!(mixture.prune(0.15)?.len(), 2);
     /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
     /// ```
     ///
@@ -27,21 +26,6 @@ where
         let mut kept = self.into_log_weighted();
         kept.retain(|(log_weight, _)| log_weight.exp() >= least);
         if kept.is_empty() { Err(GaussianError::NoWeight { count }) } else { Self::from_log_weights(kept) }
-    }
-
-    /// Keeps the `most` heaviest components, earlier ones among equals, in their order, and normalizes.
-    ///
-    /// # Errors
-    /// Returns an error if `most` is 0.
-    pub fn cap(self, most: usize) -> Result<Self, GaussianError> {
-        check_max_components(most)?;
-        let mut ranked: Vec<usize> = (0..self.len()).collect();
-        ranked.sort_by(|&i, &j| self.log_weights[j].total_cmp(&self.log_weights[i]).then(i.cmp(&j)));
-        ranked.truncate(most);
-        let all = self.into_log_weighted().into_iter().enumerate();
-        Self::from_log_weights(
-            all.filter(|(i, _)| ranked.contains(i)).map(|(_, weighted)| weighted).collect(),
-        )
     }
 }
 
