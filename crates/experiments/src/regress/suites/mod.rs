@@ -4,6 +4,7 @@ mod cml;
 mod color;
 mod consistency;
 mod lines;
+mod pose_graph;
 mod slam;
 mod track;
 mod views;

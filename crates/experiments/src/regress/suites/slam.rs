@@ -6,12 +6,14 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_sensor_log::{LogOpenOptions, read_relations};
 use wayfix_slam_system::{
     points::{self, PointSlamParams, PointSystem, RobotProfile},
-    slam::{AssociationRule, SlamEstimateRecorder},
+    ranges,
+    slam::{AssociationRule, SlamEstimateRecorder, Smoothing},
     walls::{self, WallSlamParams},
 };
 use wayfix_system_core::RunStep;
+use wayfix_table_log::RangeRecording;
 
-use super::super::PlannedJob;
+use super::{super::PlannedJob, pose_graph};
 use crate::thinned_positions::ThinnedPositions;
 
 /// Settings of a run.
@@ -29,17 +31,28 @@ struct Settings {
     /// Whether the landmarks are walls in laser scans.
     #[serde(default)]
     walls: bool,
+    /// Whether a smoother estimates points, with a fixed lag.
+    #[serde(default)]
+    smoother: bool,
     /// Positions of the log as measurements of an external sensor.
     external: Option<ThinnedPositions>,
     /// File of known relations between poses, relative to the folder of recordings.
     relations: Option<PathBuf>,
 }
 
-/// A log through EKF-SLAM.
+/// A log through EKF-SLAM or the smoother, or a pose graph.
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     if settings.walls {
         return with_walls(job, &settings);
+    }
+    if pose_graph::is_named(job.log()?) {
+        return pose_graph::run(job.log()?);
+    }
+    if RangeRecording::is_in(job.log()?) {
+        let recording = RangeRecording::read(job.log()?)?;
+        let run = ranges::run(&recording, &recording.truth)?;
+        return Ok(ReportRun { figures: ranges::plots(&run)?, ..ranges::summarize(&run) });
     }
     let options = LogOpenOptions { robot: settings.robot, ..LogOpenOptions::default() };
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
@@ -49,6 +62,9 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         None => PointSlamParams::of(profile),
     };
     params.association = settings.association.or(params.association);
+    if settings.smoother {
+        params.smoothing = Smoothing::FixedLag;
+    }
 
     let (name, path) = job.estimates_file();
     let mut estimates = SlamEstimateRecorder::create(&path, log.meta().first_format())?;
