@@ -25,7 +25,7 @@ impl WriteReport {
 /// Writes records to the file at `path`, replacing it.
 ///
 /// MCAP stores everything. Range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and detections of
-/// robots and unknown codes. TUM stores only poses. The report counts the skipped records.
+/// robots and unknown codes. TUM stores only poses: the estimated ones if there are any, else the true ones. The report counts the skipped records.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{RecordData, LogFormat, LogOpenOptions, Record, Stamp, open, write};

@@ -81,12 +81,22 @@ pub(crate) fn write(
     records: impl IntoIterator<Item = Record>,
     report: &mut WriteReport,
 ) -> io::Result<()> {
+    let (mut truth, mut estimates) = (Vec::new(), Vec::new());
     for record in records {
-        let (RecordData::TruePose(pose) | RecordData::EstimatedPose(pose)) = &record.data else {
-            report.leave_out(record.data.kind());
-            continue;
-        };
-        let (t, [x, y, z, w]) = (record.stamp.nanoseconds(), quaternion_of(pose.heading()));
+        match record.data {
+            RecordData::TruePose(pose) => truth.push((record.stamp, pose)),
+            RecordData::EstimatedPose(pose) => estimates.push((record.stamp, pose)),
+            other => report.leave_out(other.kind()),
+        }
+    }
+    let written = if estimates.is_empty() {
+        &truth
+    } else {
+        truth.iter().for_each(|_| report.leave_out("true pose beside estimated ones"));
+        &estimates
+    };
+    for (stamp, pose) in written {
+        let (t, [x, y, z, w]) = (stamp.nanoseconds(), quaternion_of(pose.heading()));
         let (seconds, rest) = (t / 1_000_000_000, t % 1_000_000_000);
         writeln!(out, "{seconds}.{rest:09} {} {} 0 {x} {y} {z} {w}", pose.x(), pose.y())?;
         report.records_written += 1;

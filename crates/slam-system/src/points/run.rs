@@ -118,10 +118,12 @@ fn drive_through<R: Borrow<Record>>(
         bail!("{}", why.map_or("the smoother did not run", |warning| &warning.text));
     }
     if !has_used_a_detection(run.events()) {
-        bail!(
-            "nothing could be estimated: no detection since the start of odometry was of use{}",
-            why(run.events())
-        );
+        let since = match run.events().get("record_before_resume") {
+            0 => "the start of odometry",
+            _ => "the stamp of the saved map, after which the log must go on,",
+        };
+        let why = why(run.events());
+        bail!("nothing could be estimated: no detection since {since} was of use{why}");
     }
     Ok(run)
 }

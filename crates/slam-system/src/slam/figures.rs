@@ -37,6 +37,9 @@ where
     let mut summary = ReportRun { metrics, timings, events: run.events().counts(), ..ReportRun::default() };
     summary.notes.extend(run.system.estimator.stamped_estimates.note("figures and pictures"));
     unobservable_directions(run.system.observability(), &mut summary);
+    if !summary.metrics.iter().any(|metric| metric.name == "ate_aligned_rmse_m") {
+        summary.notes.push("No true poses: no figures of accuracy (--truth FILE gives some).".to_owned());
+    }
     if let Some(batch) = reference {
         compare_with_batch(&batch, &mut summary);
     }

@@ -12,8 +12,8 @@ use wayfix_evaluation::{
 
 /// Compare two reports: the figures of B next to those of A.
 ///
-/// Runs are matched by name; two reports with one run each are compared even if the names differ. Figures in only one report are skipped and
-/// counted.
+/// Runs are matched by suite and name; two reports with one run of a suite each are compared even if the names differ. Figures in only one report are skipped and
+/// counted. Times are not compared.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -43,7 +43,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let n_changed: usize = compared.runs().map(|(_, run)| run.metrics.len()).sum();
     print(table::report(&compared, TableStyle::of_stdout()))?;
-    print(format!("{n_changed} figures {}\n", if arguments.all { "in both" } else { "differ" }))?;
+    let pairs = b.runs().filter_map(|(suite, run)| Some((run, counterpart(&a, &b, suite, run)?)));
+    let (n_of_a, n_of_b) =
+        pairs.fold((0, 0), |(n, m), (run, other)| (n + n_alone(other, run), m + n_alone(run, other)));
+    let verb = if arguments.all { "in both" } else { "differ" };
+    print(format!("{n_changed} figures {verb}. {} Times are not compared.\n", alone(n_of_a, n_of_b)))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -60,8 +64,8 @@ fn compared(a: &FullReport, b: &FullReport, name: &str, all: bool) -> FullReport
             let other = counterpart(a, b, &suite.name, run)?;
             let metrics: Vec<Metric> =
                 run.metrics.iter().filter_map(|metric| beside(metric, other, name, all)).collect();
-            let n_alone = run.metrics.iter().filter(|metric| value_in(other, &metric.name).is_none()).count();
-            let notes = (n_alone > 0).then(|| format!("{n_alone} figures are in B only."));
+            let notes = n_alone(run, other) + n_alone(other, run) > 0;
+            let notes = notes.then(|| alone(n_alone(other, run), n_alone(run, other)));
             let kept = ReportRun {
                 figures: Vec::new(),
                 timings: Vec::new(),
@@ -78,9 +82,10 @@ fn compared(a: &FullReport, b: &FullReport, name: &str, all: bool) -> FullReport
 }
 
 fn counterpart<'a>(a: &'a FullReport, b: &FullReport, suite: &str, run: &ReportRun) -> Option<&'a ReportRun> {
+    let mut in_suite = a.runs().filter(|(other, _)| *other == suite);
     let by_name = a.runs().find(|(other_suite, other)| *other_suite == suite && other.name == run.name);
-    let alone = || (a.runs().count() == 1 && b.runs().count() == 1).then(|| a.runs().next()).flatten();
-    by_name.or_else(alone).map(|(_, other)| other)
+    let only = || (a.runs().count() == 1 && b.runs().count() == 1).then(|| in_suite.next()).flatten();
+    by_name.or_else(only).map(|(_, other)| other)
 }
 
 fn has_common_run(a: &FullReport, b: &FullReport) -> bool {
@@ -89,6 +94,15 @@ fn has_common_run(a: &FullReport, b: &FullReport) -> bool {
 
 fn value_in(run: &ReportRun, name: &str) -> Option<f64> {
     run.metrics.iter().find(|metric| metric.name == name).map(|metric| metric.value)
+}
+
+/// Number of figures of a run that the other lacks.
+fn n_alone(run: &ReportRun, other: &ReportRun) -> usize {
+    run.metrics.iter().filter(|metric| value_in(other, &metric.name).is_none()).count()
+}
+
+fn alone(n_of_a: usize, n_of_b: usize) -> String {
+    format!("{n_of_a} figures are in A only, {n_of_b} in B only.")
 }
 
 /// The figure with that of the other run; `None` if the other lacks it, or if they are equal and only differences count.
@@ -120,7 +134,7 @@ mod tests {
         let run = &found.suites[0].runs[0];
         assert_eq!(run.metrics.len(), 1);
         assert_eq!((run.metrics[0].value, run.metrics[0].peer.as_ref().unwrap().value), (0.1, 0.2));
-        assert_eq!(run.notes, ["1 figures are in B only."]);
+        assert_eq!(run.notes, ["0 figures are in A only, 1 in B only."]);
         assert_eq!(compared(&a, &b, "A", true).suites[0].runs[0].metrics.len(), 2);
         assert!(compared(&a, &a, "A", false).suites.is_empty() && has_common_run(&a, &a));
     }

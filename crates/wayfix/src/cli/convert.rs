@@ -11,7 +11,7 @@ use super::input::{Topics, log_format};
 /// A ROS 2 bag becomes MCAP with Foxglove's schemas; one topic of each kind of record is converted (`--topic`).
 ///
 /// MCAP stores everything, including the origin of the records; Foxglove and Rerun open it. Records that another format cannot store are skipped and
-/// counted: range-bearing text has no stamps, velocities and scans; TUM has only poses.
+/// counted: range-bearing text has no stamps, velocities and scans; TUM has only poses, the estimated ones if there are any.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {

@@ -153,6 +153,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
     let log = open()?;
     let meta = log.meta().clone();
+    ensure!(
+        arguments.robot.is_none() || meta.first_format() == LogFormat::Utias,
+        "--robot is for folders of UTIAS sets, which have several robots"
+    );
     let is_kept = arguments.truth.truth.is_some();
     let overview = if is_kept {
         let (records, read) = read_all(log);
@@ -164,6 +168,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         let input = run_walls::Input { overview, is_kept, origin: meta.first_format() };
         return run_walls::main(&arguments, input, &open);
     }
+    ensure!(arguments.relations.is_none(), "--relations is for logs of scans; this log has none");
     let origin = meta.first_format();
     let params = params(&arguments, RobotProfile::of_log(&meta))?;
     if arguments.common.print_params {
@@ -263,7 +268,8 @@ impl Arguments {
 fn params(arguments: &Arguments, usual: RobotProfile) -> Result<PointSlamParams> {
     let profile = arguments.profile.unwrap_or(usual);
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| PointSlamParams::from_toml(text, profile))?
+        Some(path) => read_toml(path, |text| PointSlamParams::from_toml(text, profile))
+            .context("the log has detections: `wayfix params slam` shows its parameters")?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,
         None => PointSlamParams::of(profile),
