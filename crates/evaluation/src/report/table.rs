@@ -65,7 +65,7 @@ pub fn run(run: &ReportRun, style: TableStyle) -> String {
 const N_COLUMNS: usize = 9;
 type Row = [String; N_COLUMNS];
 const HEADER: [&str; N_COLUMNS] =
-    ["", "figure", "ours", "unit", "low", "high", "paper", "best peer", "bound from"];
+    ["", "figure", "value", "unit", "low", "high", "paper", "compared with", "bound from"];
 const GAP: usize = 2;
 
 fn row(metric: &Metric) -> Row {
@@ -122,7 +122,7 @@ fn set(rows: &[Row], style: TableStyle) -> String {
     let total = |columns: &[(usize, usize)]| {
         columns.iter().map(|(_, width)| width + GAP).sum::<usize>().saturating_sub(GAP)
     };
-    while total(&columns) > style.width && columns.last().is_some_and(|(k, _)| *k > OURS) {
+    while total(&columns) > style.width && columns.last().is_some_and(|(k, _)| *k > VALUE) {
         columns.pop();
     }
     let excess = total(&columns).saturating_sub(style.width);
@@ -135,7 +135,7 @@ fn set(rows: &[Row], style: TableStyle) -> String {
 /// Columns that are never dropped.
 const MARK: usize = 0;
 const NAME: usize = 1;
-const OURS: usize = 2;
+const VALUE: usize = 2;
 
 fn set_row(row: &Row, columns: &[(usize, usize)], style: TableStyle) -> String {
     let mut line = String::new();
@@ -152,7 +152,7 @@ fn set_cell(column: usize, text: &str, width: usize, colour: bool) -> String {
     let blank = " ".repeat(width.saturating_sub(measure_text_width(&cut)));
     match column {
         MARK if !text.is_empty() => mark(text == PASS, colour),
-        OURS | 4..=6 => blank + &cut,
+        VALUE | 4..=6 => blank + &cut,
         _ => cut.into_owned() + &blank,
     }
 }
@@ -188,8 +188,8 @@ mod tests {
             assert_eq!(column_of(line, name), 2, "{line}");
         }
         let end = |line: &str, text: &str| column_of(line, text) + text.chars().count();
-        assert_eq!(end(lines[0], "ours"), end(lines[1], "0.1210"));
-        assert_eq!(end(lines[0], "ours"), end(lines[3], "15"));
+        assert_eq!(end(lines[0], "value"), end(lines[1], "0.1210"));
+        assert_eq!(end(lines[0], "value"), end(lines[3], "15"));
         assert!(lines[1].starts_with("✓ ") && lines[2].starts_with("✗ ") && lines[3].starts_with("  "));
     }
 

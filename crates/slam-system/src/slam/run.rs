@@ -2,7 +2,7 @@ use std::borrow::Borrow;
 
 use nalgebra::{DefaultAllocator, Vector2};
 use wayfix_evaluation::{
-    errors::{PoseWithTruth, ReferencePath, TruePositions},
+    errors::{PoseWithTruth, ReferencePath, TruePositions, trajectory_errors},
     plot::Decimated,
 };
 use wayfix_sensor_log::{Record, Stamp};
@@ -11,7 +11,7 @@ use wayfix_system_core::{EventCounts, RunStep, System, drive, warn_of_no_overlap
 
 use super::{
     FrontEnd, SlamEstimator, SlamSystem, SmoothedRun, StampedEstimate,
-    start::{warn_of_retired_landmarks, warn_of_unseen_anchors},
+    start::{warn_of_large_errors, warn_of_retired_landmarks, warn_of_unseen_anchors},
     warn_of_an_empty_map,
 };
 
@@ -68,6 +68,11 @@ where
         let estimated =
             estimates.first().zip(estimates.last()).map(|(first, last)| (first.stamp, last.stamp));
         warn_of_no_overlap(self.system.events(), &self.truth, estimated);
+        if !self.truth.is_estimate() {
+            let samples: Vec<_> = self.samples().into_iter().map(|(_, sample)| sample).collect();
+            let nees = trajectory_errors(&samples).and_then(|errors| errors.nees_mean);
+            warn_of_large_errors(self.system.events(), nees);
+        }
         let n_landmarks = self.system.filter().n_landmarks();
         warn_of_an_empty_map(self.system.events(), n_landmarks);
         let SlamEstimator { filter, events, unseen_anchors, .. } = &mut self.system.estimator;
@@ -85,7 +90,9 @@ where
                     self.system.estimator.stamped_estimates =
                         std::mem::replace(&mut smoothed.estimates, Decimated::new(0));
                 }
-                self.system.events().add("detection_paired_anew", smoothed.n_paired_anew as u64);
+                if smoothed.n_paired_anew > 0 {
+                    self.system.events().add("detection_paired_anew", smoothed.n_paired_anew as u64);
+                }
                 self.smoothed = Some(smoothed);
             }
             Err(reason) => {

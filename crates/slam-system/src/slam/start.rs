@@ -32,6 +32,20 @@ pub(crate) fn warn_of_retired_landmarks(events: &mut EventCounts, n_retired: usi
     }
 }
 
+/// Mean NEES of three degrees of freedom that a consistent estimator reaches with a probability of 1 % at most, however its errors are correlated:
+/// Markov's inequality.
+const IMPLAUSIBLE_NEES: f64 = 3.0 / 0.01;
+
+/// Says when the errors are far larger than their covariances allow.
+pub(crate) fn warn_of_large_errors(events: &mut EventCounts, nees_mean: Option<f64>) {
+    if let Some(nees) = nees_mean.filter(|nees| *nees > IMPLAUSIBLE_NEES) {
+        let text = format!(
+            "the mean NEES is {nees:.0}, and 3 for a consistent estimator: the truth or the resumed map is of another log, the noise is set too small, or the estimate went wrong"
+        );
+        events.warn("errors_exceed_covariances", text);
+    }
+}
+
 /// The pose of parameters, else the known one, else the origin.
 pub(crate) fn start_pose(given: Option<[f64; 3]>, known: Option<TrueStartPose>) -> Pose2<f64> {
     let given = given.map(|[x, y, heading]| Pose2::new(x, y, heading));

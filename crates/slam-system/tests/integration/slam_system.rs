@@ -173,3 +173,22 @@ fn retired_landmarks_are_said_and_an_anchor_is_no_fault() {
     // The standard filter is inconsistent here already; what counts is what each option adds.
     assert_abs_diff_eq!(anchored, standard, epsilon = 0.1 * (retired - standard));
 }
+
+#[test]
+fn truth_of_another_log_is_suspected() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/loop_known.mcap");
+    let (mut records, _) =
+        wayfix_sensor_log::open(log, &LogOpenOptions::default()).expect("a stored log").read_all();
+    let params = PointSlamParams::of(RobotProfile::RangeBearing);
+    let suspected = |records: &[Record]| {
+        run(records, &params, |_| {}).expect("a usable log").events().get("errors_exceed_covariances")
+    };
+    assert_eq!(suspected(&records), 0);
+    // Another robot, that stands.
+    for record in &mut records {
+        if let RecordData::TruePose(pose) = &mut record.data {
+            *pose = Pose2::new(0.0, 0.0, 0.0);
+        }
+    }
+    assert_eq!(suspected(&records), 1);
+}

@@ -40,12 +40,12 @@ fn remarks(run: &ReportRun) -> String {
 fn metrics(run: &ReportRun) -> String {
     let heads = [
         ("figure", false),
-        ("ours", true),
+        ("value", true),
         ("unit", false),
         ("low", true),
         ("high", true),
         ("paper", true),
-        ("best peer", true),
+        ("compared with", true),
         ("bound from", false),
         ("pass", false),
     ];

@@ -20,7 +20,7 @@ pub struct ExternalParams {
     /// Standard deviation of positions without a covariance, m; without it they are refused.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub position_sigma: Option<f64>,
-    /// The same of headings, rad.
+    /// Standard deviation of headings without a covariance, rad; without it they are refused.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub heading_sigma: Option<f64>,
 }
