@@ -32,7 +32,7 @@ pub struct ColorMap {
 }
 
 impl ColorMap {
-    /// A map of these shapes; a shape's [`ColorId`] is a place in `colors`.
+    /// A map of these shapes; a shape's [`ColorId`](crate::ColorId) is a place in `colors`.
     ///
     /// # Errors
     /// See [`ColorMapError`]: unknown, too many or equally named colours; polygons with too few corners, without width, not flat or not

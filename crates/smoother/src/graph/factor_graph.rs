@@ -193,7 +193,7 @@ impl Graph {
     /// Whether a variable, by its number, is neither held nor named by any residual.
     pub fn is_without_residual(&self, variable: usize) -> bool {
         let mut named = self.batches.iter().flat_map(|batch| batch.variables()).flatten();
-        !self.fixed[variable] && !named.any(|index| *index == variable)
+        self.fixed.get(variable) == Some(&false) && !named.any(|index| *index == variable)
     }
 
     /// The residuals of a type in the order of adding, with the numbers of their variables and their information.
