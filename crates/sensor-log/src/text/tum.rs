@@ -75,7 +75,7 @@ fn parse(row: &str, order: &Order, kind: PoseKind) -> Result<Record, RowError> {
     Ok(Record { stamp, data: kind.data(pose) })
 }
 
-/// Writes true and estimated poses, which the format does not distinguish.
+/// Writes the estimated poses, else the true ones: the format does not distinguish them.
 pub(crate) fn write(
     out: &mut impl Write,
     records: impl IntoIterator<Item = Record>,

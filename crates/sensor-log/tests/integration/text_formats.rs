@@ -241,3 +241,19 @@ fn tum_columns_are_read_by_their_names_and_with_commas() {
         assert!(abs_diff_eq!(pose.heading(), 1.3, epsilon = 1e-15) && pose.x() == 2.0, "{text}: {pose:?}");
     }
 }
+
+#[test]
+fn tum_has_one_kind_of_pose() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = folder.path().join("path.tum");
+    let pose = |x: f64| Pose2::new(x, 0.0, 0.0);
+    let truth = [at(1.0, RecordData::TruePose(pose(1.0))), at(2.0, RecordData::TruePose(pose(2.0)))];
+    let estimate = at(1.0, RecordData::EstimatedPose(pose(1.1)));
+    let written = |records: Vec<Record>| {
+        let report = wayfix_sensor_log::write(&path, LogFormat::Tum, records).expect("finite poses");
+        let rows = fs::read_to_string(&path).expect("a file").lines().count();
+        (rows, report.records_written, report.left_out.values().sum::<u64>())
+    };
+    assert_eq!(written(truth.to_vec()), (2, 2, 0));
+    assert_eq!(written([&truth[..], &[estimate]].concat()), (1, 1, 2));
+}

@@ -12,8 +12,8 @@ use wayfix_evaluation::{
 
 /// Compare two reports: the figures of B next to those of A.
 ///
-/// Runs are matched by suite and name; two reports with one run of a suite each are compared even if the names differ. Figures in only one report are skipped and
-/// counted. Times are not compared.
+/// Runs are matched by suite and name. Two reports with one run each, of the same suite, are compared even if the names differ. Figures in only
+/// one report are skipped and counted. Times are not compared.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -64,8 +64,8 @@ fn compared(a: &FullReport, b: &FullReport, name: &str, all: bool) -> FullReport
             let other = counterpart(a, b, &suite.name, run)?;
             let metrics: Vec<Metric> =
                 run.metrics.iter().filter_map(|metric| beside(metric, other, name, all)).collect();
-            let notes = n_alone(run, other) + n_alone(other, run) > 0;
-            let notes = notes.then(|| alone(n_alone(other, run), n_alone(run, other)));
+            let (n_of_a, n_of_b) = (n_alone(other, run), n_alone(run, other));
+            let notes = (n_of_a + n_of_b > 0).then(|| alone(n_of_a, n_of_b));
             let kept = ReportRun {
                 figures: Vec::new(),
                 timings: Vec::new(),
@@ -101,6 +101,7 @@ fn n_alone(run: &ReportRun, other: &ReportRun) -> usize {
     run.metrics.iter().filter(|metric| value_in(other, &metric.name).is_none()).count()
 }
 
+/// These numbers in words.
 fn alone(n_of_a: usize, n_of_b: usize) -> String {
     format!("{n_of_a} figures are in A only, {n_of_b} in B only.")
 }

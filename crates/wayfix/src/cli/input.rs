@@ -25,13 +25,22 @@ pub(super) fn name_of(log: &[PathBuf]) -> String {
     log.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Parameters from a TOML file; the error names the file and the key, or the line where the text is not valid TOML.
-pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
+/// Parameters of a system from a TOML file.
+///
+/// The error names the file, the template of the system, and the key, or the line where the text is not valid TOML.
+pub(super) fn read_toml<P>(
+    path: &Path,
+    system: &str,
+    parse: impl Fn(&str) -> Result<P, toml::de::Error>,
+) -> Result<P> {
     let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {
         anyhow::anyhow!("{}{}", error.to_string().trim_end(), hint(error.message()).unwrap_or_default())
     });
-    read.with_context(|| format!("parameters in {} are not usable", path.display()))
+    let path = path.display();
+    read.with_context(|| {
+        format!("parameters in {path} are not usable (`wayfix params {system}` lists those of this run)")
+    })
 }
 
 /// The present name of an unknown key, or the most similar name, from a message "unknown field `a`, expected one of `b`, `c`".

@@ -239,3 +239,11 @@ fn output_that_cannot_be_written_is_told() {
     refused(&wayfix([Path::new("convert"), &log, &scratch.path("walk.xyz")]), "--to mcap");
     refused(&wayfix([Path::new("convert"), &log, &log]), "write to another file");
 }
+
+#[test]
+fn options_without_effect_are_refused() {
+    let scratch = Scratch::new();
+    let log = scratch.file("walk.txt", walk(40));
+    refused(&run_slam(&log, &["--robot", "3"]), "UTIAS");
+    refused(&run_slam(&log, &["--relations", "nothere"]), "scans");
+}

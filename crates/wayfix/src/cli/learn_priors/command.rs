@@ -72,7 +72,7 @@ Examples:
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.params {
-        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        Some(path) => read_toml(path, "color", |text| toml::from_str(text))?,
         None => ColorSystemParams::default(),
     };
     let colors = match &arguments.map {

@@ -122,7 +122,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        Some(path) => read_toml(path, "color", |text| toml::from_str(text))?,
         None => ColorSystemParams::default(),
     };
     if arguments.as_published {

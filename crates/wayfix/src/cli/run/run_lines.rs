@@ -47,7 +47,7 @@ Examples:
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        Some(path) => read_toml(path, "lines", |text| toml::from_str(text))?,
         None => LineExtractionParams::default(),
     };
     if arguments.common.print_params {

@@ -268,8 +268,7 @@ impl Arguments {
 fn params(arguments: &Arguments, usual: RobotProfile) -> Result<PointSlamParams> {
     let profile = arguments.profile.unwrap_or(usual);
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| PointSlamParams::from_toml(text, profile))
-            .context("the log has detections: `wayfix params slam` shows its parameters")?
+        Some(path) => read_toml(path, "slam", |text| PointSlamParams::from_toml(text, profile))?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,
         None => PointSlamParams::of(profile),

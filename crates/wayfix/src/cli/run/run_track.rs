@@ -92,7 +92,7 @@ impl FromStr for BoxArgument {
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.common.params {
-        Some(path) => read_toml(path, from_toml::<TrackParams>)?,
+        Some(path) => read_toml(path, "track", from_toml::<TrackParams>)?,
         None if arguments.as_published => TrackParams::as_published(),
         None => TrackParams::default(),
     };

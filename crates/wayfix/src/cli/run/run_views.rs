@@ -136,7 +136,7 @@ impl FromStr for Shift {
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, from_toml::<ViewsParams>)?,
+        Some(path) => read_toml(path, "views", from_toml::<ViewsParams>)?,
         None if arguments.as_published => ViewsParams::as_published(),
         None => ViewsParams::default(),
     };

@@ -95,8 +95,7 @@ fn relations(path: &Path) -> Result<Vec<PoseRelation>> {
 
 fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, from_toml::<WallSlamParams>)
-            .context("the log has laser scans: `wayfix params walls` shows its parameters")?
+        Some(path) => read_toml(path, "walls", from_toml::<WallSlamParams>)?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,
         None => WallSlamParams::default(),

@@ -33,7 +33,7 @@ use crate::commented::commented;
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        Some(path) => read_toml(path, "cml", |text| toml::from_str(text))?,
         None => CmlParams::default(),
     };
     arguments.set_published(&mut params);
