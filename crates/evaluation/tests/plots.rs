@@ -218,3 +218,22 @@ fn scan_points_in_one_pixel_are_one_dot() {
     assert!(map.svg.matches("<circle").count() <= 6, "three places, two of the legend");
     assert!(map.svg.contains("2σ of a wall") && map.svg.contains("scan point"));
 }
+
+#[test]
+fn exact_start_leaves_the_band_visible() {
+    let drawn = |start: f64| {
+        let plot = ConsistencyPlot {
+            samples: vec![(0.0, start), (1.0, 2.0), (2.0, 4.0)],
+            expected: 3.0,
+            band: (0.216, 9.348),
+            window: 2,
+            scale: AxisScale::Log10,
+            ..Default::default()
+        };
+        shapes(&plot.draw().expect("a picture"), "polyline", "ink-0")
+    };
+    // 0.216² / 3 is as far below the band as the band begins below the mean.
+    let lowest = 0.216 * 0.216 / 3.0;
+    assert_eq!(drawn(1e-30), drawn(lowest));
+    assert_ne!(drawn(1e-30), drawn(2.0 * lowest));
+}

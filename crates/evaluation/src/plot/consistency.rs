@@ -63,17 +63,28 @@ impl ConsistencyPlot {
         let plate = Plate { heading, x, y, height: PANEL_HEIGHT };
         Frame { title: &self.title, alt, legend, x_label: "time, s" }.draw(&[plate], |_, panel| {
             let ends = x.ends();
-            panel.series(&self.samples, Ink::ESTIMATE, 0.8)?;
+            panel.series(&self.shown(), Ink::ESTIMATE, 0.8)?;
             panel.band(&[(ends.0, low, high), (ends.1, low, high)], Ink::Data(2))?;
             panel.series(&[(ends.0, self.expected), (ends.1, self.expected)], Ink::Data(2), 1.0)?;
             panel.series(&moving_mean(&self.samples, self.window), Ink::Data(1), 1.8)
         })
     }
 
+    /// The samples as drawn. A logarithmic axis ends as far below the band as the band begins below the mean: an exact start has a NEES near 0, and
+    /// would press the band to a line.
+    fn shown(&self) -> Vec<(f64, f64)> {
+        let lowest = match self.scale {
+            AxisScale::Linear => f64::NEG_INFINITY,
+            AxisScale::Log10 => self.band.0 * self.band.0 / self.expected,
+        };
+        let shown = |&(t, value): &(f64, f64)| (t, if value < lowest { lowest } else { value });
+        self.samples.iter().map(shown).collect()
+    }
+
     /// Shows every sample and the band; linear from zero.
     fn value_axis(&self) -> Option<Axis> {
         let origin = (self.scale == AxisScale::Linear).then_some(0.0);
-        let values = self.samples.iter().map(|(_, value)| *value);
+        let values = self.shown().into_iter().map(|(_, value)| value);
         Axis::covering(
             values.chain([self.band.0, self.band.1, self.expected]).chain(origin),
             self.scale,
