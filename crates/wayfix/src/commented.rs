@@ -10,7 +10,8 @@ pub(crate) fn schema_of<P: JsonSchema>() -> Schema {
     schema_for!(P)
 }
 
-/// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments.
+/// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments
+/// that show their syntax.
 ///
 /// # Errors
 /// Returns an error if the parameters have no TOML form.
@@ -43,7 +44,7 @@ fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
         } else if let Some(mut key) = table.key_mut(key) {
             key.leaf_decor_mut().set_prefix(says);
         } else {
-            unset += &format!("{says}# {key} = not set\n");
+            unset += &format!("{says}# {key} = {} # not set\n", syntax(property, root));
         }
     }
     // Behind the last key that has a value, still in front of the first table.
@@ -85,6 +86,32 @@ fn choices(property: &Value, root: &Value) -> Vec<Vec<String>> {
         Some(paragraphs(&format!("{name}: {means}")).into_iter().map(|line| format!("  {line}")).collect())
     };
     variants.iter().filter_map(variant).collect()
+}
+
+/// A value of the right syntax: defaults where there are any, else zeros and the first variant of an enumeration.
+fn syntax(property: &Value, root: &Value) -> String {
+    let target = resolved(property, root);
+    let has_type = |name: &str| {
+        target["type"] == name || target["type"].as_array().is_some_and(|all| all.contains(&name.into()))
+    };
+    let default = &property["default"];
+    if default.is_number() || default.is_string() || default.is_boolean() {
+        return default.to_string();
+    }
+    if let Some(variant) = target["oneOf"][0]["const"].as_str() {
+        return format!("\"{variant}\"");
+    }
+    if let Some(fields) = target["properties"].as_object() {
+        let fields: Vec<_> =
+            fields.iter().map(|(key, field)| format!("{key} = {}", syntax(field, root))).collect();
+        return format!("{{ {} }}", fields.join(", "));
+    }
+    if has_type("array") {
+        let n = target["minItems"].as_u64().unwrap_or(1) as usize;
+        return format!("[{}]", vec![syntax(&target["items"], root); n].join(", "));
+    }
+    let zeros = [("number", "0.0"), ("integer", "0"), ("boolean", "false")];
+    zeros.into_iter().find(|(name, _)| has_type(name)).map_or("\"\"", |(_, zero)| zero).to_owned()
 }
 
 /// Resolves a reference to a definition, and an optional type to its inner type.
@@ -168,12 +195,33 @@ mod tests {
     }
 
     #[test]
+    fn keys_that_are_not_set_show_a_syntax_that_is_read() {
+        fn uncommented<P: JsonSchema + Serialize + serde::de::DeserializeOwned>(params: &P) -> usize {
+            let text = commented(params).unwrap();
+            let shown = text.lines().filter(|line| line.ends_with("# not set"));
+            for line in shown.clone() {
+                let with = text.replacen(line, line.trim_start_matches("# "), 1);
+                assert!(toml::from_str::<P>(&with).is_ok(), "{line}: {:?}", toml::from_str::<P>(&with).err());
+            }
+            shown.count()
+        }
+        assert!(uncommented(&PointSlamParams::of(RobotProfile::Generic)) > 5);
+        assert!(uncommented(&WallSlamParams::default()) > 5);
+        assert!(uncommented(&ColorSystemParams::default()) > 3);
+        assert!(uncommented(&TrackParams::default()) > 0);
+        assert!(uncommented(&CmlParams::default()) > 0);
+    }
+
+    #[test]
     fn units_choices_and_what_is_not_set_are_told() {
         let text = commented(&PointSlamParams::of(RobotProfile::Generic)).unwrap();
         for part in [
             "# Time from the exposure of the sensor to the stamp of what it saw, s.",
             "\"downweight\": Their weight decreases",
-            "# start_pose = not set",
+            "# start_pose = [0.0, 0.0, 0.0] # not set",
+            "# association = \"known\" # not set",
+            "# datum = [0.0, 0.0] # not set",
+            "# merging = { min_separation = 0.1, n_sigmas = 2.0 } # not set",
         ] {
             assert!(text.contains(part), "{part} in\n{text}");
         }

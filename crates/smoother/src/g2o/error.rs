@@ -53,8 +53,8 @@ pub enum G2oError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineProblem {
-    /// A word at its begin that is not read.
-    #[error("`{0}` is not read")]
+    /// A word at its begin that is not one of the format, or of a kind of vertex or edge that is not read.
+    #[error("`{0}` is not a word of g2o that is read, such as VERTEX_SE2, EDGE_SE2, VERTEX_SE3:QUAT or FIX")]
     UnknownTag(String),
     /// Too few or too many numbers.
     #[error("`{tag}` has {got} numbers, expected {expected}")]

@@ -1,20 +1,28 @@
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use anyhow::Result;
 use wayfix_evaluation::terminal::print;
-use wayfix_sensor_log::{LogFormat, LogOpenOptions, LogSummary};
+use wayfix_sensor_log::{LogOpenOptions, LogSummary, RecordData};
+use wayfix_table_log::RangeRecording;
 
-use super::input::{Topics, log_format};
+use super::{
+    input::Topics,
+    run::run_ranges::{SlamLogFormat, slam_log_format},
+};
 
 /// Show the content of a log: kinds of records with their rates, landmarks, robots, and read problems.
 #[derive(clap::Args)]
 #[command(after_long_help = FORMATS)]
 pub(super) struct Arguments {
-    /// The log: a file, or the folder of a UTIAS set, of Victoria Park or of images.
+    /// The log: a file, or the folder of a UTIAS set, of Victoria Park, of Plaza or of images.
     path: PathBuf,
     /// Input format [default: detected from the content].
-    #[arg(long, value_parser = log_format())]
-    format: Option<LogFormat>,
+    #[arg(long, value_parser = slam_log_format())]
+    format: Option<SlamLogFormat>,
     /// Number of the robot, for sets with several robots.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
@@ -27,6 +35,8 @@ Formats:
   utias          a folder with Barcodes.dat and RobotN_{Odometry,Measurement,Groundtruth}.dat
   victoria-park  a folder with odometry.csv (t_s,speed_mps,steering_rad), trees.csv (t_s,range_m,bearing_rad,diameter_m;
                  bearing 0 to the right) and, for figures, gps.csv (t_s,x_m,y_m)
+  plaza          a folder with odometry.csv (t_s,distance_m,turn_rad), ranges.csv (t_s,beacon,range_m) and, for figures,
+                 truth.csv (t_s,x_m,y_m,heading_rad) and beacons.csv (beacon,x_m,y_m)
   range-bearing  text without stamps, a step every 0.1 s, each in the order P, O, Z
                    L id x y              a true landmark, m
                    P x y heading         the true pose, m and rad
@@ -49,8 +59,14 @@ Formats:
 Text may be compressed with gzip.";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let format = match arguments.format {
+        Some(SlamLogFormat::Plaza) => return ranges(&arguments.path),
+        None if RangeRecording::is_in(&arguments.path) => return ranges(&arguments.path),
+        Some(SlamLogFormat::Log(format)) => Some(format),
+        None => None,
+    };
     let options = LogOpenOptions {
-        format: arguments.format,
+        format,
         robot: arguments.robot,
         topics: arguments.topics.topics,
         ..LogOpenOptions::default()
@@ -60,6 +76,42 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The content of a folder of ranges to beacons.
+fn ranges(folder: &Path) -> Result<ExitCode> {
+    let RangeRecording { odometry, ranges, truth, report } = RangeRecording::read(folder)?;
+    let seconds = match (odometry.first(), odometry.last()) {
+        (Some((first, _)), Some((last, _))) => last.seconds_since(*first),
+        _ => 0.0,
+    };
+    let beacons: BTreeSet<u32> = ranges.iter().map(|row| row.beacon).collect();
+    let n_poses = truth.iter().filter(|record| matches!(record.data, RecordData::TruePose(_))).count();
+    print(format!(
+        "{}: plaza, {seconds:.1} s
+  {:<20} {:>7} records
+  {:<20} {:>7} records, of {} beacons, {} of them with true position
+  {:<20} {n_poses:>7} records
+{report}\
+usable for `wayfix run slam --estimator smoother`, {}\n",
+        folder.display(),
+        "odometry increment",
+        odometry.len(),
+        "range",
+        ranges.len(),
+        beacons.len(),
+        truth.len() - n_poses,
+        "true pose",
+        figures(n_poses > 0)
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn figures(has_truth: bool) -> &'static str {
+    match has_truth {
+        true => "with figures of accuracy",
+        false => "without true poses there are no figures of accuracy",
+    }
+}
+
 /// The systems of `wayfix run` that can use a log; if there are none, the missing records.
 fn usable_for(summary: &LogSummary) -> Vec<String> {
     let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
@@ -67,10 +119,7 @@ fn usable_for(summary: &LogSummary) -> Vec<String> {
     let moves = steps || has(&["ackermann drive"]);
     let sees_landmarks = !summary.landmarks_seen.is_empty() || summary.n_unlabelled > 0;
     let scans = has(&["laser scan"]);
-    let figures = match has(&["true pose", "true position"]) {
-        true => "with figures of accuracy",
-        false => "without true poses there are no figures of accuracy",
-    };
+    let figures = figures(has(&["true pose", "true position"]));
     let systems = [
         (sees_landmarks && moves, "slam", figures),
         (!sees_landmarks && scans && steps, "slam", figures),

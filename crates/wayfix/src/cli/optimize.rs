@@ -20,6 +20,8 @@ use wayfix_smoother::{
 };
 use wayfix_system_core::Stopwatch;
 
+use super::outputs::create_folder;
+
 /// Optimize a pose graph in the format of g2o: the poses that fit the measurements best.
 ///
 /// The cost is Σ eᵀΩe over all edges, with e the logarithm in SE(2) or SE(3) of the difference between measurement and poses, and Ω the
@@ -115,6 +117,8 @@ Examples:
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let path = &arguments.graph;
+    ensure!(!path.is_dir(), "{} is a folder; give a graph, a .g2o file", path.display());
+    arguments.out.as_deref().map_or(Ok(()), create_folder)?;
     let text = read_text(path)?;
     let file = g2o::read(text.as_bytes()).with_context(|| path.display().to_string())?;
     drop(text);
@@ -258,7 +262,6 @@ fn show(mut run: ReportRun, arguments: &Arguments, maps: [MapPlot; 2]) -> Result
 }
 
 fn write_report(out: &Path, run: ReportRun) -> Result<()> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
     for (name, figure) in ["before.svg", "after.svg"].iter().zip(&run.figures) {
         let path = out.join(name);
         fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;

@@ -3,7 +3,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_evaluation::{
     plot::SvgPlot,
@@ -22,6 +22,13 @@ const ESTIMATES: &str = "estimates.mcap";
 /// File of the Foxglove layout.
 const LAYOUT: &str = "foxglove-layout.json";
 
+/// Makes a folder for output, unless it exists.
+pub(super) fn create_folder(folder: &Path) -> Result<()> {
+    let name = folder.display();
+    ensure!(!folder.is_file(), "{name} is a file, but output needs a folder: give another name");
+    fs::create_dir_all(folder).with_context(|| format!("cannot create {name}"))
+}
+
 /// Destinations of the results of a `wayfix run`: standard output, and optionally a folder and viewers.
 pub(super) struct Outputs<'a> {
     suite: &'static str,
@@ -35,7 +42,7 @@ impl<'a> Outputs<'a> {
     /// Makes the folder and starts the live view, where they are wanted.
     pub(super) fn open(suite: &'static str, common: &'a Common) -> Result<Self> {
         if let Some(out) = &common.out {
-            fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+            create_folder(out)?;
         }
         Ok(Self { suite, common, live: common.live.start()?, log: None })
     }

@@ -15,8 +15,8 @@ use crate::commented::{commented, schema_of};
 
 /// Print the parameters of a system with their defaults, units and descriptions: a template for `--params`.
 ///
-/// A parameter file only needs the keys that differ from the defaults; an unknown key is an error. `--schema` prints the JSON schema
-/// instead, with which editors complete and check such files.
+/// A parameter file only needs the keys that differ from the defaults; an unknown key is an error. A key that is not set by default is a
+/// comment that shows its syntax. `--schema` prints the JSON schema instead, with which editors complete and check such files.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {

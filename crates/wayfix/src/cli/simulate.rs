@@ -12,6 +12,8 @@ use wayfix_scene_sim::{
     scenery::{ImagingConditions, RgbPicture, Scenery},
 };
 
+use super::outputs::create_folder;
+
 /// Make simulated images to try a system on.
 ///
 /// Logs with a laser, wheels, a camera or panoramas are in the folder `fixtures` of the repository.
@@ -84,7 +86,7 @@ pub(super) fn main(command: Command) -> Result<ExitCode> {
 
 fn shoot(film: &SyntheticFilm, out: &Path) -> Result<()> {
     let folder = out.join("frames");
-    create(&folder)?;
+    create_folder(&folder)?;
     let mut truth = String::new();
     let bar = terminal::bar(film.n_frames, "filming");
     for (index, frame) in film.frames()?.enumerate() {
@@ -108,7 +110,7 @@ fn true_box(frame: &FilmFrame) -> String {
 }
 
 fn compose(scenery: &Scenery, out: &Path) -> Result<()> {
-    create(out)?;
+    create_folder(out)?;
     let learned = scenery.compose();
     let real = ImagingConditions::dimmed().picture_of(&learned, scenery.seed)?;
     save(&out.join("learned.png"), learned)?;
@@ -125,8 +127,4 @@ fn save(path: &Path, picture: RgbPicture) -> Result<()> {
     let image = image::RgbImage::from_raw(width, height, picture.rgb)
         .ok_or_else(|| anyhow!("a picture of {width} × {height} has another number of pixels"))?;
     image.save(path).with_context(|| format!("cannot write {}", path.display()))
-}
-
-fn create(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))
 }
