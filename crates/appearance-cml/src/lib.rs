@@ -23,8 +23,8 @@ pub use fusion::{
     PoseHypothesisSource, PositionFix, UniformComponent, combine, fuse,
 };
 pub use localizer::{
-    AppearanceLocalizer, KidnappingTest, LocalizerEvent, LocalizerParams, MapLearning, PoseHypothesisRule,
-    StartPosePrior, ViewUpdateOutcome,
+    AppearanceLocalizer, LocalizerEvent, LocalizerParams, MapLearning, PoseHypothesisRule, StartPosePrior,
+    ViewUpdateOutcome,
 };
 pub use model::{
     AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingUncertainty, MapUpdate, PlaceComponent,

@@ -54,6 +54,20 @@ pub enum ColorModelError {
         /// The image's.
         got: (usize, usize),
     },
+    /// A map whose global search would not end.
+    #[error(
+        "a global search of a map of {width:.0} x {depth:.0} m takes {n_samples:.1e} poses, more than {most}: are its lengths in metres? (0 samples per place track from a known start without a search)"
+    )]
+    MapTooLarge {
+        /// Along x, m.
+        width: f64,
+        /// Along y, m.
+        depth: f64,
+        /// Poses of a search.
+        n_samples: f64,
+        /// As many would be searched.
+        most: usize,
+    },
     /// A row too long for exact sums.
     #[error("rows of {width} pixels are longer than {limit}, beyond which sums would overflow")]
     TooWide {

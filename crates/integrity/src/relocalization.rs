@@ -29,8 +29,8 @@ pub struct AlternativeHypothesis<H> {
 enum Kind {
     /// As probable as the present hypothesis before any measurement.
     Start,
-    /// Of a search, with its prior.
-    Proposed { prior: f64 },
+    /// Of a search; removed below this statistic, m.
+    Proposed { removed_below: f64 },
     /// It was the present hypothesis; the distance driven since, m.
     Previous { distance: f64 },
 }
@@ -128,11 +128,13 @@ impl<H> RelocalizationTest<H> {
         proposals: impl IntoIterator<Item = RelocalizationCandidate<H>>,
     ) -> Result<(), IntegrityError> {
         let (distance, even) = (self.search_distance(), 1.0 / self.params.prior());
+        let removal_factor = self.removal_factor();
         let start = |RelocalizationCandidate { hypothesis, prior, log_likelihood_ratio }| {
             check("prior", prior, prior > 0.0 && prior <= 1.0, "above 0, at most 1")?;
             check_ratio(log_likelihood_ratio)?;
             let statistic = times(prior * distance, log_likelihood_ratio);
-            Ok(AlternativeHypothesis { hypothesis, statistic, kind: Kind::Proposed { prior } })
+            let removed_below = removal_factor * prior * distance;
+            Ok(AlternativeHypothesis { hypothesis, statistic, kind: Kind::Proposed { removed_below } })
         };
         let mut started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
         let total: f64 = started.iter().map(|one| one.statistic / even).sum();
@@ -216,13 +218,17 @@ impl<H> RelocalizationTest<H> {
 
     /// Removes each alternative whose odds have fallen, from where it started, by the factor at which an even alternative would be decided.
     fn remove_hopeless(&mut self) {
-        let (prior, distance) = (self.params.prior(), self.search_distance());
-        let factor = 1.0 / (prior * self.params.threshold());
+        let start = self.removal_factor() / self.params.prior();
         self.alternatives.retain(|alternative| match alternative.kind {
-            Kind::Start => alternative.statistic >= factor / prior,
-            Kind::Proposed { prior } => alternative.statistic >= factor * prior * distance,
+            Kind::Start => alternative.statistic >= start,
+            Kind::Proposed { removed_below } => alternative.statistic >= removed_below,
             Kind::Previous { .. } => true,
         });
+    }
+
+    /// The factor at which an even alternative would be decided, inverted.
+    fn removal_factor(&self) -> f64 {
+        1.0 / (self.params.prior() * self.params.threshold())
     }
 }
 

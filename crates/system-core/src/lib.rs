@@ -8,6 +8,7 @@
 //! | Which parameters are overridden? | [`settings`] |
 //! | Do odometry and measurements overlap in time? | [`check_overlap`] |
 //! | Can a robot move like that? | [`IncrementPlausibilityCheck`], [`check_velocity`] |
+//! | How does the odometry of a log move the robot? | [`LoggedOdometry`] |
 //! | What moved a robot with a held velocity command? | [`HeldVelocity`] |
 //! | How did a robot move between two times? | [`motion_between`] |
 //! | Is the odometry late? | [`TurnHistory`], [`without_odometry_delay`] |
@@ -33,10 +34,11 @@ pub use laser::max_echo_range;
 pub use measurement::map_measurement;
 pub use records::{
     EventCounts, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck, LogOverview,
-    MAX_SPEED, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, RefusedRecord, TurnHistory, VELOCITY_TIMEOUT,
-    check_overlap, check_velocity, motion_between, without_odometry_delay,
+    LoggedMotion, LoggedOdometry, MAX_SPEED, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, OdometryRecordKind,
+    RefusedRecord, TurnHistory, VELOCITY_TIMEOUT, check_overlap, check_velocity, motion_between,
+    warn_of_no_odometry, without_odometry_delay,
 };
 pub use robot_drawing::{PathSegmentWriter, ellipse_drawing, write_pose, write_robot};
 pub use system::{MOST_ESTIMATES, System};
-pub use truth_warnings::{warn_of_no_overlap, warn_of_reference, warn_of_start};
+pub use truth_warnings::{warn_of_large_errors, warn_of_no_overlap, warn_of_reference, warn_of_start};
 pub use wayfix_evaluation::terminal::Stopwatch;

@@ -1,4 +1,4 @@
-use wayfix_evaluation::errors::ReferencePath;
+use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath, trajectory_errors};
 use wayfix_sensor_log::Stamp;
 
 use crate::{EventCounts, TrueStartPose};
@@ -27,6 +27,21 @@ pub fn warn_of_reference(events: &mut EventCounts, truth: &ReferencePath) {
             "reference_is_another_estimate",
             "the log has no true poses: errors are differences from the poses of another program, whose own errors are unknown (--truth FILE gives true ones)",
         );
+    }
+}
+
+/// Mean NEES of three degrees of freedom that a consistent estimator reaches with a probability of 1 % at most, however its errors are correlated:
+/// Markov's inequality.
+const IMPLAUSIBLE_NEES: f64 = 3.0 / 0.01;
+
+/// Says when the errors are far larger than their covariances allow.
+pub fn warn_of_large_errors(events: &mut EventCounts, truth: &ReferencePath, samples: &[PoseWithTruth]) {
+    let nees = trajectory_errors(samples).and_then(|errors| errors.nees_mean);
+    if let Some(nees) = nees.filter(|nees| !truth.is_estimate() && *nees > IMPLAUSIBLE_NEES) {
+        let text = format!(
+            "the mean NEES is {nees:.0}, and 3 for a consistent estimator: the truth or the resumed map is of another log, the noise is set too small, or the estimate went wrong"
+        );
+        events.warn("errors_exceed_covariances", text);
     }
 }
 

@@ -1,4 +1,5 @@
-use wayfix_estimation_traits::{MotionModel, Pose2};
+use nalgebra::Matrix3;
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::belief::Belief;
@@ -165,6 +166,19 @@ where
         self.belief = self.belief.predicted(increment, &self.motion_model)?;
         self.motion = motion;
         self.kidnap.predict(|belief| belief.predicted(increment, &self.motion_model));
+        Ok(())
+    }
+
+    /// Predicts the belief by a motion that nothing measured, with this covariance in the body frame, m² and rad².
+    ///
+    /// # Errors
+    /// Returns an error if the covariance is not finite; the state is then unchanged.
+    pub fn predict_unknown(&mut self, covariance: &Matrix3<f64>) -> Result<(), AppearanceMapError> {
+        let unknown = Motion { increment: Pose2::identity(), covariance: *covariance };
+        let motion = self.motion.then(&unknown)?;
+        self.belief = self.belief.moved(&unknown)?;
+        self.motion = motion;
+        self.kidnap.predict(|belief| belief.moved(&unknown));
         Ok(())
     }
 

@@ -2,6 +2,7 @@ use wayfix_estimation_traits::{MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::{LocalizerParams, StartPosePrior};
+use crate::state::Motion;
 use crate::{
     AppearanceMapError, GaussianMixtureLikelihood, MixtureWeighting, PoseHypothesis, PoseHypothesisSource,
     UniformComponent, fuse, propagate, simplify, unimodal,
@@ -46,12 +47,22 @@ impl Belief {
     where
         M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
     {
+        self.each_moved(|component| propagate(component, increment, motion))
+    }
+
+    /// After a motion with its own covariance.
+    pub(super) fn moved(&self, motion: &Motion) -> Result<Self, AppearanceMapError> {
+        let refused = AppearanceMapError::NotFinite { what: "covariance of a motion" };
+        self.each_moved(|component| motion.applied(component).ok_or(refused.clone()))
+    }
+
+    fn each_moved(
+        &self,
+        moved: impl Fn(&Gaussian<Pose2<f64>>) -> Result<Gaussian<Pose2<f64>>, AppearanceMapError>,
+    ) -> Result<Self, AppearanceMapError> {
         let Some(state) = &self.state else { return Ok(self.clone()) };
-        let moved = state
-            .log_weights()
-            .iter()
-            .zip(state.components())
-            .map(|(log_weight, component)| Ok((*log_weight, propagate(component, increment, motion)?)));
+        let weighted = state.log_weights().iter().zip(state.components());
+        let moved = weighted.map(|(log_weight, component)| Ok((*log_weight, moved(component)?)));
         let moved = moved.collect::<Result<Vec<_>, AppearanceMapError>>()?;
         Ok(Self { state: Some(GaussianMixture::from_log_weights(moved)?), ..*self })
     }

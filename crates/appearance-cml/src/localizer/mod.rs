@@ -15,5 +15,5 @@ mod start;
 
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{LocalizerEvent, ViewUpdateOutcome};
-pub use params::{KidnappingTest, LocalizerParams, MapLearning, PoseHypothesisRule};
+pub use params::{LocalizerParams, MapLearning, PoseHypothesisRule};
 pub use start::StartPosePrior;

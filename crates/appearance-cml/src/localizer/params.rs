@@ -37,29 +37,11 @@ pub enum PoseHypothesisRule {
     Interpolation,
 }
 
-/// Whether the localizer tests for a kidnapping.
-///
-/// ```
-/// use wayfix_appearance_cml::{LocalizerParams, KidnappingTest};
-/// let never_relocalized = LocalizerParams { kidnapping_test: KidnappingTest::Off, ..LocalizerParams::default() };
-/// assert!(never_relocalized.validate().is_ok());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum KidnappingTest {
-    /// No test.
-    Off,
-    /// The sequential test of [`RelocalizationTest`](wayfix_integrity::RelocalizationTest).
-    #[default]
-    SequentialTest,
-}
-
 /// Parameters of the localizer.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LocalizerParams, KidnappingTest};
-/// assert_eq!(LocalizerParams::as_published().kidnapping_test, KidnappingTest::Off);
+/// use wayfix_appearance_cml::LocalizerParams;
+/// assert!(LocalizerParams::as_published().relocalization.is_off());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -79,9 +61,7 @@ pub struct LocalizerParams {
     pub mixture_reduction: MixtureReductionParams,
     /// Minimum weight of the heaviest component of a unimodal belief. Default 0.8: four to one against all other poses.
     pub unimodal_min_weight: f64,
-    /// Default [`KidnappingTest::SequentialTest`].
-    pub kidnapping_test: KidnappingTest,
-    /// Rates and distances of the test.
+    /// Rates and distances of the test for a kidnapping; without false alarms there is no test.
     pub relocalization: RelocalizationParams,
     /// Default [`MapLearning::Adapting`].
     pub map_learning: MapLearning,
@@ -99,7 +79,6 @@ impl Default for LocalizerParams {
             fusion: MixtureFusionParams::default(),
             mixture_reduction: MixtureReductionParams::default(),
             unimodal_min_weight: 0.8,
-            kidnapping_test: KidnappingTest::default(),
             relocalization: RelocalizationParams::default(),
             map_learning: MapLearning::default(),
             map: AppearanceMapParams::default(),
@@ -115,7 +94,7 @@ impl LocalizerParams {
         Self {
             pose_hypothesis_rule: PoseHypothesisRule::Superposition,
             fusion: MixtureFusionParams::as_published(),
-            kidnapping_test: KidnappingTest::Off,
+            relocalization: RelocalizationParams::off(),
             map: AppearanceMapParams::as_published(),
             skip_outlier_views_in_mapping: false,
             ..Self::default()

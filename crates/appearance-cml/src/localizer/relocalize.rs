@@ -3,7 +3,7 @@ use wayfix_gaussian_core::Gaussian;
 use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
 use super::belief::Belief;
-use super::{AppearanceLocalizer, KidnappingTest, LocalizerParams};
+use super::{AppearanceLocalizer, LocalizerParams};
 use crate::model::{N_FAR, PlaceTest};
 use crate::{AppearanceMap, AppearanceMapError, ReferenceSearch, ViewDescriptor, separation_squared};
 
@@ -90,11 +90,8 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
         kidnap: &mut KidnapTest,
         belief: &mut Belief,
     ) -> Result<bool, AppearanceMapError> {
-        let Some(present) =
-            self.belief.heaviest().filter(|_| self.params.kidnapping_test != KidnappingTest::Off)
-        else {
-            return Ok(false);
-        };
+        let is_on = !self.params.relocalization.is_off();
+        let Some(present) = self.belief.heaviest().filter(|_| is_on) else { return Ok(false) };
         let (map, params) = (&self.map, &self.params);
         let distance = self.motion.distance();
         let radius = map.match_radius(&params.map);

@@ -5,10 +5,10 @@ use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, KidnappingTest, LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior,
-    ViewUpdateOutcome,
+    AppearanceLocalizer, LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior, ViewUpdateOutcome,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_integrity::RelocalizationParams;
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
@@ -19,9 +19,9 @@ const BESIDE: f64 = 0.3;
 const TRAVEL: usize = 77;
 
 /// A localizer with a known start in a static map of the lane.
-fn at_start(field: &Field, kidnapping_test: KidnappingTest, rng: &mut ChaCha8Rng) -> Localizer {
+fn at_start(field: &Field, relocalization: RelocalizationParams, rng: &mut ChaCha8Rng) -> Localizer {
     let params =
-        LocalizerParams { map_learning: MapLearning::Static, kidnapping_test, ..LocalizerParams::default() };
+        LocalizerParams { map_learning: MapLearning::Static, relocalization, ..LocalizerParams::default() };
     let mut teacher = Localizer::new(params, StartPosePrior::Anywhere).expect("valid defaults");
     for step in 0..N_STEPS {
         let pose = beside(step, 0.0);
@@ -49,11 +49,11 @@ fn error(localizer: &Localizer, at: Vector2<f64>) -> f64 {
 }
 
 /// Number of robots within 1 m after a kidnapping by half a lap and 20 m [`BESIDE`] the lane.
-fn found_after_kidnapping(kidnapping_test: KidnappingTest) -> usize {
+fn found_after_kidnapping(relocalization: RelocalizationParams) -> usize {
     let is_found = |seed: &u64| {
         let mut rng = ChaCha8Rng::seed_from_u64(*seed);
         let field = Field::new(&mut rng);
-        let mut localizer = at_start(&field, kidnapping_test, &mut rng);
+        let mut localizer = at_start(&field, relocalization, &mut rng);
         for step in 0..TRAVEL {
             take_step(&mut localizer, &field, (step, 0.0), &mut rng);
         }
@@ -68,8 +68,8 @@ fn found_after_kidnapping(kidnapping_test: KidnappingTest) -> usize {
 
 #[test]
 fn kidnapped_robot_beside_the_lane_is_found_by_the_test() {
-    let with = found_after_kidnapping(KidnappingTest::SequentialTest);
-    let without = found_after_kidnapping(KidnappingTest::Off);
+    let with = found_after_kidnapping(RelocalizationParams::default());
+    let without = found_after_kidnapping(RelocalizationParams::off());
     // The target is 85 of 100: fewer than seven of ten happen by chance in one run of twenty.
     assert!(with >= 7 && without < with, "{with} found with the test, {without} without, of {N_SEEDS}");
 }
@@ -78,7 +78,7 @@ fn kidnapped_robot_beside_the_lane_is_found_by_the_test() {
 fn largest_error(seed: u64, seen: impl Fn(usize, &[Field; 2], &mut ChaCha8Rng) -> FieldView) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let fields = [Field::new(&mut rng), Field::new(&mut rng)];
-    let mut localizer = at_start(&fields[0], KidnappingTest::default(), &mut rng);
+    let mut localizer = at_start(&fields[0], RelocalizationParams::default(), &mut rng);
     let mut largest: f64 = 0.0;
     for step in 0..2 * N_STEPS {
         let view = seen(step, &fields, &mut rng);
@@ -109,7 +109,7 @@ fn rearranged_aisle_does_not_relocalize_the_robot() {
 fn steps_until_relocated(seed: u64) -> Option<usize> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (known_ground, new_ground) = (Field::new(&mut rng), Field::new(&mut rng));
-    let taught = at_start(&known_ground, KidnappingTest::default(), &mut rng);
+    let taught = at_start(&known_ground, RelocalizationParams::default(), &mut rng);
     let far = |step: usize| Pose2::new(100.0, 0.0, 0.0).compose(&beside(step, 0.0));
     let start = StartPosePrior::Known(known(far(0)));
     let mut localizer = Localizer::with_map(*taught.params(), taught.into_map(), start).expect("valid");

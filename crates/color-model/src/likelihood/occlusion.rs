@@ -35,8 +35,16 @@ impl ViewOcclusionModel {
 
     /// The probability of a hidden view `seconds` later.
     pub(crate) fn predict(&self, hidden: f64, seconds: f64) -> f64 {
+        if self.mean_time_hidden == 0.0 {
+            return 0.0; // the rate is infinite
+        }
         let rate = 1.0 / self.mean_time_free + 1.0 / self.mean_time_hidden;
         self.share() + (hidden - self.share()) * (-rate * seconds).exp()
+    }
+
+    /// The probability of a hidden view after a frame with this log-evidence, $`\ln [(1 - h)\, p + h]`$: Bayes.
+    pub(crate) fn posterior(hidden: f64, log_evidence: f64) -> f64 {
+        (hidden.ln() - log_evidence).exp().min(1.0)
     }
 }
 
@@ -57,9 +65,16 @@ mod tests {
             hidden = occlusion.predict(hidden, 0.1);
             let log_evidence = or_hidden(-50.0, hidden);
             cost.push(-log_evidence);
-            hidden = (hidden.ln() - log_evidence).exp(); // Bayes
+            hidden = ViewOcclusionModel::posterior(hidden, log_evidence);
         }
         assert!((cost[0] - 11_f64.ln()).abs() < 1e-9, "the prior odds"); // 1 of 11
         assert!(cost[9] < 0.11, "it lasts for 1 s, and a frame for 0.1 s");
+    }
+
+    #[test]
+    fn view_that_is_never_hidden_is_free_at_once() {
+        let never = ViewOcclusionModel { mean_time_hidden: 0.0, ..ViewOcclusionModel::default() };
+        assert_eq!([0.0, 0.1].map(|seconds| never.predict(never.share(), seconds)), [0.0, 0.0]);
+        assert_eq!(or_hidden(-50.0, 0.0), -50.0);
     }
 }

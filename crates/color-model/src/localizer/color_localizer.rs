@@ -14,7 +14,7 @@ use super::{
     filter::ColorFilter,
     frame::{PreparedFrame, Scene, check_frame},
     odometry::OdometryDelta,
-    search::Area,
+    search::{Area, check_area},
 };
 use crate::{
     BackgroundColorModel, ColorModelError, LightingFilterBank, LightingTracker, LikelihoodModel,
@@ -90,7 +90,8 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
     /// A localizer with this prior of the pose and this tracker of the light, with the odometry noise and the pixel likelihood of the parameters.
     ///
     /// # Errors
-    /// Returns an error if a parameter is out of range, the map is empty, or the map and the light differ in their number of colours.
+    /// Returns an error if a parameter is out of range, the map is empty or too large to be searched, or the map and the light differ in their number of
+    /// colours.
     pub fn new<R: Rng + ?Sized>(
         map: Arc<ColorMap>,
         camera: PinholeCamera,
@@ -127,6 +128,7 @@ where
             return Err(ColorModelError::Dimension { what: "colours of the light", expected, got });
         }
         let area = Area::of(&map)?;
+        check_area(&area, &camera, &params)?;
         let prior = Arc::new(SunAndShade::new(light, likelihood.mixes_lights()));
         let location =
             |_| CameraLocation { body: start.draw(&area, rng), error: params.camera_pose_noise.sample(rng) };

@@ -14,7 +14,8 @@ use super::{
     frame::PreparedFrame,
 };
 use crate::{
-    ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums, likelihood::or_hidden,
+    ColorMeans, ColorModelError, LightingTracker, LikelihoodModel, PixelSums, ViewOcclusionModel,
+    likelihood::or_hidden,
 };
 
 /// A camera location with its light, $`p(θ | x, z)`$, and what the last frame shows from there. [Schulz & Fox 2004, Eqs. 11–12]
@@ -150,7 +151,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             mean_log_likelihood += weight * particle.log_likelihood.max(least);
         }
         let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
-        self.hidden = (hidden.ln() - log_evidence).exp().min(1.0); // Bayes
+        self.hidden = ViewOcclusionModel::posterior(hidden, log_evidence);
         self.weighing = Weighing {
             log_evidence,
             mean_log_likelihood,

@@ -102,6 +102,14 @@ where
         self.0.noise(measurement)
     }
 
+    fn association_noise(&self, measurement: &S::Measurement) -> TangentMatrix<S::Measurement> {
+        self.0.association_noise(measurement)
+    }
+
+    fn common_noise(&self, a: &S::Measurement, b: &S::Measurement) -> TangentMatrix<S::Measurement> {
+        self.0.common_noise(a, b)
+    }
+
     fn noise_at_expected(
         &self,
         expected: &S::Measurement,

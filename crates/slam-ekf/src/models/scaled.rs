@@ -107,6 +107,21 @@ where
         self.0.common_noise(a, b)
     }
 
+    fn is_compatible(&self, expected: &RangeBearing, measurement: &RangeBearing) -> bool {
+        self.0.is_compatible(expected, measurement)
+    }
+
+    /// The landmark by the range in the scale of the inner sensor.
+    fn extended(
+        &self,
+        robot: &PoseWithRangeScale,
+        landmark: &Vector2<f64>,
+        measurement: &RangeBearing,
+    ) -> Vector2<f64> {
+        let range = measurement.range / robot.log_range_scale.exp();
+        self.0.extended(&robot.pose, landmark, &RangeBearing { range, ..*measurement })
+    }
+
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         self.0.is_usable(measurement)
     }

@@ -9,11 +9,13 @@ use wayfix_slam_ekf::{
     PoseWithRangeScale, RangeBearing, RangeBearingSensor, RangeBearingSensorWithScale, SequentialMotion,
     SlamError, SlamParams, SlamSnapshot, UnknownMotion,
 };
-use wayfix_system_core::{EstimateWriter, IncrementPlausibilityCheck, Stopwatch, check_velocity};
+use wayfix_system_core::{
+    EstimateWriter, IncrementPlausibilityCheck, OdometryRecordKind, Stopwatch, check_velocity,
+};
 
 use super::{
-    MountingParams, OdometryRecordKind, PointSlamParams, commands::Commands, drawing,
-    follower::PointFollower, state::PointFrontEndState,
+    MountingParams, PointSlamParams, commands::Commands, drawing, follower::PointFollower,
+    state::PointFrontEndState,
 };
 use crate::slam::{AssociationRule, FrontEnd, MotionEstimate, SavedMapError, SlamEstimator, SlamSystem, nis};
 

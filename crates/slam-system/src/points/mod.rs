@@ -16,4 +16,4 @@ pub use front_end::{PointSensor, PointSlamFrontEnd, PointSystem};
 pub use params::{MountingParams, PointSlamParams, RobotProfile, RobotTimingParams};
 pub use plots::plots;
 pub use run::{PointRun, run, run_on, run_streamed};
-pub use state::{OdometryRecordKind, PointFrontEndState, SavedPointMap};
+pub use state::{PointFrontEndState, SavedPointMap};

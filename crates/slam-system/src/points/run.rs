@@ -10,11 +10,14 @@ use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePosit
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{LandmarkEstimate, LandmarkId};
 use wayfix_system_core::{
-    EventCounts, ODOMETRY, OVERVIEW_HEAD, RunStep, System, TrueStartPose, check_overlap, warn_of_start,
+    EventCounts, ODOMETRY, OVERVIEW_HEAD, OdometryRecordKind, RunStep, System, TrueStartPose, check_overlap,
+    warn_of_start,
 };
 
-use super::{OdometryRecordKind, PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
-use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose};
+use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
+use crate::slam::{
+    AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose, warn_of_gross_errors,
+};
 
 /// The result of EKF-SLAM with points on a log; the true map has the landmarks by identity.
 pub type PointRun = SlamRun<PointSlamFrontEnd, BTreeMap<u32, Vector2<f64>>>;
@@ -110,6 +113,7 @@ fn drive_through<R: Borrow<Record>>(
 ) -> Result<PointRun> {
     let last_odometry = overview.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let mut run = SlamRun::new(system, &truth, true_landmarks(overview)).through(records, observe);
+    warn_of_gross_errors(run.events());
     let last_truth = run.truth.last_stamp().or(run.true_positions.last_stamp());
     run.evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;

@@ -1,9 +1,9 @@
 use nalgebra::{Matrix3, Vector2};
 use serde::{Deserialize, Serialize};
-use wayfix_sensor_log::{RecordData, Stamp, Velocity};
+use wayfix_sensor_log::{Stamp, Velocity};
 use wayfix_slam_ekf::MotionStatistics;
 use wayfix_slam_ekf::{PoseWithRangeScale, SlamError};
-use wayfix_system_core::check_velocity;
+use wayfix_system_core::{OdometryRecordKind, check_velocity};
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem};
 use crate::slam::{FrontEndState, SavedMapError, SlamState, Smoothing, check_association};
@@ -27,29 +27,6 @@ pub struct PointFrontEndState {
 impl FrontEndState for PointFrontEndState {
     const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
     const LANDMARK: (&str, usize) = ("point in the plane", 2);
-}
-
-/// The kind of odometry that moves a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OdometryRecordKind {
-    /// Velocities, each held until the next.
-    Velocities,
-    /// Increments.
-    Increments,
-    /// Speed and steering of a car, each held until the next.
-    Drives,
-}
-
-impl OdometryRecordKind {
-    /// The kind of a record; `None` when it is no odometry.
-    pub(super) fn of(data: &RecordData) -> Option<Self> {
-        match data {
-            RecordData::Velocity(_) => Some(Self::Velocities),
-            RecordData::OdometryIncrement(_) => Some(Self::Increments),
-            RecordData::Ackermann(_) => Some(Self::Drives),
-            _ => None,
-        }
-    }
 }
 
 impl PointFrontEndState {

@@ -2,13 +2,15 @@ use std::collections::BTreeMap;
 
 use anyhow::{Result, ensure};
 use nalgebra::{Matrix3, Vector2};
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
-use wayfix_sensor_log::{Record, RecordData};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_slam_smoother::range_only::{
     self, Calibration, CalibrationPrior, RangeOnlyEstimate, RangeOnlyNoise, RangeOnlyParams,
 };
-use wayfix_system_core::{EventCounts, Stopwatch, warn_of_no_overlap};
+use wayfix_system_core::{
+    EventCounts, Stopwatch, TrueStartPose, warn_of_large_errors, warn_of_no_overlap, warn_of_start,
+};
 use wayfix_table_log::RangeRecording;
 
 use super::input::StampedInput;
@@ -37,8 +39,15 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     let mut events = EventCounts::default();
     let path = ReferencePath::from_records(truth);
     let begin = recording.odometry.first().map(|(stamp, _)| *stamp).unwrap_or_default();
-    let known = path.at(begin).or_else(|| path.first_after(begin).map(|(_, pose)| pose));
-    if known.is_none() {
+    let increment = |(stamp, increment): &(Stamp, Pose2<f64>)| Record {
+        stamp: *stamp,
+        data: RecordData::OdometryIncrement(*increment),
+    };
+    let odometry: Vec<Record> = recording.odometry.iter().map(increment).collect();
+    let known = TrueStartPose::at(begin, &path, &odometry);
+    if known.is_some() {
+        warn_of_start(&mut events, known, &path);
+    } else {
         events.warn(
             "start_pose_unknown",
             "no true pose at the start: the run starts at (0, 0, 0), and figures are aligned ones only",
@@ -46,7 +55,7 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
     }
     let stopwatch = Stopwatch::start();
     let StampedInput { stamps, input } =
-        StampedInput::new(recording, known.unwrap_or(Pose2::new(0.0, 0.0, 0.0)), &mut events);
+        StampedInput::new(recording, known.map_or(Pose2::identity(), |known| known.pose), &mut events);
     ensure!(!input.ranges.is_empty(), "no range is positive and within the time of odometry");
     let estimate = range_only::estimate(&input, &RangeOnlyParams::default())?;
     let dead_reckoning = input.dead_reckoning();
@@ -69,7 +78,10 @@ pub fn run(recording: &RangeRecording, truth: &[Record]) -> Result<RangeRun> {
         _ => None,
     });
     let true_beacons = true_beacons.collect();
-    Ok(RangeRun { estimate, stamped_estimates, truth: path, true_beacons, events })
+    let mut run = RangeRun { estimate, stamped_estimates, truth: path, true_beacons, events };
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    warn_of_large_errors(&mut run.events, &run.truth, &samples);
+    Ok(run)
 }
 
 fn say_assumptions(estimate: &RangeOnlyEstimate, prior: &CalibrationPrior, events: &mut EventCounts) {

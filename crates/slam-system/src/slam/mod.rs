@@ -32,6 +32,6 @@ pub(crate) use plots::{path_plots, plots_with};
 pub use run::SlamRun;
 pub(crate) use saved::check_association;
 pub use saved::{PeriodicStateSaver, SavedMapError, SlamState};
-pub(crate) use start::{start_pose, warn_of_an_empty_map};
+pub(crate) use start::{start_pose, warn_of_an_empty_map, warn_of_gross_errors};
 pub(crate) use system::FIRST_ANCHOR;
 pub use system::{SlamSystem, StateOf};

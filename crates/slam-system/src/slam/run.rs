@@ -2,16 +2,16 @@ use std::borrow::Borrow;
 
 use nalgebra::{DefaultAllocator, Vector2};
 use wayfix_evaluation::{
-    errors::{PoseWithTruth, ReferencePath, TruePositions, trajectory_errors},
+    errors::{PoseWithTruth, ReferencePath, TruePositions},
     plot::Decimated,
 };
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
-use wayfix_system_core::{EventCounts, RunStep, System, drive, warn_of_no_overlap};
+use wayfix_system_core::{EventCounts, RunStep, System, drive, warn_of_large_errors, warn_of_no_overlap};
 
 use super::{
     FrontEnd, SlamEstimator, SlamSystem, SmoothedRun, StampedEstimate,
-    start::{warn_of_large_errors, warn_of_retired_landmarks, warn_of_unseen_anchors},
+    start::{warn_of_retired_landmarks, warn_of_unseen_anchors},
     warn_of_an_empty_map,
 };
 
@@ -68,11 +68,8 @@ where
         let estimated =
             estimates.first().zip(estimates.last()).map(|(first, last)| (first.stamp, last.stamp));
         warn_of_no_overlap(self.system.events(), &self.truth, estimated);
-        if !self.truth.is_estimate() {
-            let samples: Vec<_> = self.samples().into_iter().map(|(_, sample)| sample).collect();
-            let nees = trajectory_errors(&samples).and_then(|errors| errors.nees_mean);
-            warn_of_large_errors(self.system.events(), nees);
-        }
+        let samples: Vec<_> = self.samples().into_iter().map(|(_, sample)| sample).collect();
+        warn_of_large_errors(self.system.events(), &self.truth, &samples);
         let n_landmarks = self.system.filter().n_landmarks();
         warn_of_an_empty_map(self.system.events(), n_landmarks);
         let SlamEstimator { filter, events, unseen_anchors, .. } = &mut self.system.estimator;

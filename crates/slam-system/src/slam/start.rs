@@ -32,17 +32,26 @@ pub(crate) fn warn_of_retired_landmarks(events: &mut EventCounts, n_retired: usi
     }
 }
 
-/// Mean NEES of three degrees of freedom that a consistent estimator reaches with a probability of 1 % at most, however its errors are correlated:
-/// Markov's inequality.
-const IMPLAUSIBLE_NEES: f64 = 3.0 / 0.01;
+/// Share of gross errors in routine data: 1 to 10 %. [Hampel et al. 1986, section 1.2c]
+const LARGEST_GROSS_SHARE: f64 = 0.1;
 
-/// Says when the errors are far larger than their covariances allow.
-pub(crate) fn warn_of_large_errors(events: &mut EventCounts, nees_mean: Option<f64>) {
-    if let Some(nees) = nees_mean.filter(|nees| *nees > IMPLAUSIBLE_NEES) {
+/// Says when more observations lie outside their gates than outliers of a sensor explain.
+pub(crate) fn warn_of_gross_errors(events: &mut EventCounts) {
+    let outside = [
+        "observation_downweighted",
+        "observation_rejected_by_gate",
+        "observation_neither_known_nor_new",
+        "tentative_landmark_restarted",
+    ];
+    let n_outside: u64 = outside.iter().map(|name| events.get(name)).sum();
+    let n_all = n_outside + events.get("observation_accepted");
+    let share = n_outside as f64 / n_all.max(1) as f64;
+    if share > LARGEST_GROSS_SHARE {
+        let percent = 100.0 * share;
         let text = format!(
-            "the mean NEES is {nees:.0}, and 3 for a consistent estimator: the truth or the resumed map is of another log, the noise is set too small, or the estimate went wrong"
+            "{n_outside} of {n_all} observations ({percent:.0} %) contradict odometry and map: check units and signs of both, identities, stamps, and the noise of the parameters"
         );
-        events.warn("errors_exceed_covariances", text);
+        events.warn("observations_contradict_odometry", text);
     }
 }
 

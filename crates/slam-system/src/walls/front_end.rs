@@ -16,8 +16,11 @@ use wayfix_system_core::{
 
 use super::{
     KeyframeThreshold, WallFrontEndState, WallSlamParams, drawing,
+    match_to_keyframe::KeyframeMatch,
     odometry::{Motion, OdometryBetweenScans},
+    odometry_scale::OdometryScale,
     relative_motion::RelativeMotion,
+    repeated_scan::RepeatedScanCheck,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis};
@@ -50,6 +53,10 @@ pub struct WallSlamFrontEnd {
     laser_heading: Option<f64>,
     /// By how much the robot has turned to each scan from the one before, by odometry and by the scans alone.
     pub(super) turns: TurnHistory,
+    repeated_scans: RepeatedScanCheck,
+    /// Motions by the scans alone beside those by odometry.
+    pub(super) odometry_scale: OdometryScale,
+    dead_reckoning_at_keyframe: Option<Pose2<f64>>,
     /// Points for the picture of the map.
     pub(super) scan_sample: ScanSample,
 }
@@ -93,6 +100,9 @@ impl WallSystem {
             waiting: VecDeque::new(),
             laser_heading: None,
             turns: TurnHistory::default(),
+            repeated_scans: RepeatedScanCheck::default(),
+            odometry_scale: OdometryScale::default(),
+            dead_reckoning_at_keyframe: None,
             scan_sample: ScanSample::default(),
         };
         Ok(Self::new(front_end, estimator))
@@ -271,9 +281,14 @@ impl WallSlamFrontEnd {
         estimator: &mut Walls,
     ) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
+        if let Err(reason) = self.repeated_scans.check(scan, &estimator.dead_reckoning) {
+            self.add_stamped_estimate(stamp, (0.0, 0), estimator);
+            return Err(reason);
+        }
         let scan = self.placed(scan, laser, &mut estimator.events);
         let cloud = scan.cloud().map_err(|error| error.to_string())?;
-        let laser_heading = self.match_to_keyframe(&cloud, estimator);
+        let matched = self.match_to_keyframe(&cloud, estimator);
+        let laser_heading = matched.and_then(|matched| matched.heading());
         let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
         self.laser_heading = laser_heading;
         let KeyframeThreshold { min_distance, min_rotation } = self.params.keyframes;
@@ -283,6 +298,7 @@ impl WallSlamFrontEnd {
                 (0.0, 0)
             } else {
                 let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
+                self.compare_with_odometry(matched, &estimator.dead_reckoning);
                 self.predict_to_scan(estimator)?;
                 let observations = self.walls_among(&found.segments, &scan.laser, estimator);
                 let keyframe = self.last_keyframe.insert(KeyframeScan { scan, cloud });
@@ -301,6 +317,14 @@ impl WallSlamFrontEnd {
         self.add_stamped_estimate(stamp, corrected, estimator);
         self.turns.push(stamp, estimator.dead_reckoning, seen_turn);
         Ok(())
+    }
+
+    /// Compares the motion from the last keyframe to a new one by odometry and by the scans alone.
+    fn compare_with_odometry(&mut self, matched: Option<KeyframeMatch>, dead_reckoning: &Pose2<f64>) {
+        let from = self.dead_reckoning_at_keyframe.replace(*dead_reckoning);
+        if let (Some(from), Some(KeyframeMatch { guess, found })) = (from, matched) {
+            self.odometry_scale.add(&from.inverse().compose(dead_reckoning), &guess, &found);
+        }
     }
 
     /// A scan with the motion of the laser during it, by the velocity of odometry.

@@ -1,5 +1,6 @@
 use nalgebra::{DMatrix, Vector1};
-use wayfix_scan_match::{InitialGuess, ScanPointCloud};
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_scan_match::{InitialGuess, ScanAlignment, ScanPointCloud};
 use wayfix_slam_ekf::HeadingDriftSensor;
 
 use super::front_end::{WallSlamFrontEnd, Walls};
@@ -7,23 +8,34 @@ use super::front_end::{WallSlamFrontEnd, Walls};
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
 
+/// A match of a scan to that of the last keyframe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KeyframeMatch {
+    /// The motion since the keyframe before the match.
+    pub(super) guess: Pose2<f64>,
+    pub(super) found: ScanAlignment,
+}
+
 impl WallSlamFrontEnd {
-    /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the heading of
-    /// the match alone, relative to the keyframe.
-    pub(super) fn match_to_keyframe(&mut self, cloud: &ScanPointCloud, estimator: &mut Walls) -> Option<f64> {
-        let mut laser_heading = None;
+    /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the match.
+    pub(super) fn match_to_keyframe(
+        &mut self,
+        cloud: &ScanPointCloud,
+        estimator: &mut Walls,
+    ) -> Option<KeyframeMatch> {
+        let mut matched = None;
         self.relative_motion =
             self.relative_motion.with_odometry_noise_per_scan(&self.params.odometry_noise_per_scan);
-        if let (Some(look), Some(matcher)) = (&self.last_keyframe, self.matcher) {
+        if let (Some(keyframe), Some(matcher)) = (&self.last_keyframe, self.matcher) {
             let drift_variance = estimator.filter.robot_covariance()[(3, 3)];
             let covariance = self.relative_motion.total_covariance(drift_variance);
             let others = self.relative_motion.guesses_without_odometry();
             let guess =
                 InitialGuess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
-            let found = matcher.align(&look.cloud, cloud, &guess);
+            let found = matcher.align(&keyframe.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
                 estimator.events.count("keyframe_matched");
-                laser_heading = self.relative_motion.heading_from_match(&found);
+                matched = Some(KeyframeMatch { guess: self.relative_motion.motion, found });
                 let relative_motion = self.relative_motion.with_scaled_covariance(found.guess_scale);
                 let drift_change = relative_motion
                     .drift_from_match(&found)
@@ -35,7 +47,16 @@ impl WallSlamFrontEnd {
             }
         }
         self.relative_motion = self.relative_motion.after_scan();
-        laser_heading
+        matched
+    }
+}
+
+impl KeyframeMatch {
+    /// The heading by the points alone, without odometry; `None` if they do not constrain a direction.
+    pub(super) fn heading(&self) -> Option<f64> {
+        let correction = self.found.information.try_inverse()? * self.found.information_vector;
+        let heading = self.guess.retract(&correction).heading();
+        heading.is_finite().then_some(heading)
     }
 }
 

@@ -104,13 +104,6 @@ impl RelativeMotion {
         Self { covariance: self.covariance * scale.max(1.0), ..self }
     }
 
-    /// The heading by the points of a match alone, without odometry; `None` if they do not constrain a direction.
-    pub(super) fn heading_from_match(&self, found: &ScanAlignment) -> Option<f64> {
-        let asked = found.information.try_inverse()? * found.information_vector;
-        let heading = self.motion.retract(&asked).heading();
-        heading.is_finite().then_some(heading)
-    }
-
     /// The correction of the drift by a match of two scans, and its variance; `None` if the match gives no information.
     ///
     /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is the error of odometry without the drift, with covariance $`Q`$.

@@ -107,10 +107,13 @@ fn drive_through<R: Borrow<Record>>(
     let delay = system.front_end.params.odometry_delay;
     let mut run = SlamRun::new(system, &truth, true_map).through(records, observe);
     if run.system.stamped_estimates().is_empty() {
-        let n_before = run.events().get("record_before_resume");
-        bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
+        let events = run.events();
+        let n_before = events.get("record_before_resume");
+        let why = events.refusals().first().map_or(String::new(), |first| format!(": {first}"));
+        bail!("none of the scans could be used ({n_before} are before the end of the resumed run){why}");
     }
     run.system.front_end.turns.warn_of_lag(&mut run.system.estimator.events, delay);
+    run.system.front_end.odometry_scale.warn(&mut run.system.estimator.events);
     let samples = run.samples();
     let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME

@@ -33,7 +33,13 @@ impl TurnHistory {
 
     /// Warns if odometry is stamped late relative to scans or images, and names the parameter that corrects it; `delay` is its current value.
     pub fn warn_of_lag(&self, events: &mut EventCounts, delay: f64) {
-        if let Some(lag) = odometry_lag(&self.odometry, &self.seen) {
+        let lag = odometry_lag(&self.odometry, &self.seen);
+        if lag.is_some_and(|lag| lag.is_at_the_edge) {
+            events.warn(
+                "odometry_lags",
+                format!("odometry and what the sensor shows agree best at the largest shift tried, {LARGEST_LAG} s: their clocks differ by more, or one of them is wrong"),
+            );
+        } else if let Some(Lag { seconds: lag, .. }) = lag {
             let delay = delay + lag;
             events.warn(
                 "odometry_lags",
@@ -43,10 +49,18 @@ impl TurnHistory {
     }
 }
 
-/// Lag of the odometry, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`.
+/// A shift of the odometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lag {
+    seconds: f64,
+    /// Whether it is the largest that was tried.
+    is_at_the_edge: bool,
+}
+
+/// Lag of the odometry: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`.
 ///
 /// Returns `None` if no shift is significant, for example on a straight path.
-fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Option<f64> {
+fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Option<Lag> {
     let odometry = Turns::of(track);
     let pairs = track.windows(2).zip(seen_turns.iter().skip(1));
     let stretches: Vec<(f64, f64, f64)> = pairs
@@ -63,11 +77,13 @@ fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Op
     periods.sort_by(f64::total_cmp);
     let period = *periods.get(periods.len() / 2).filter(|period| **period > 0.0)?;
     let n_periods = (LARGEST_LAG / period).min(MOST_PERIODS) as i32;
-    let lags = (-n_periods..=n_periods).map(|n| f64::from(n) * period);
-    let (_, lag) = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let shifts = (-n_periods..=n_periods).map(|n| (disagreement(f64::from(n) * period), n));
+    let (_, n) = shifts.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let lag = f64::from(n) * period;
     let gain = stretches.len() as f64 * (disagreement(0.0) / disagreement(lag)).ln();
     // A shift that helps in both directions only smooths noise and is no lag.
-    (gain > LIKELIHOOD_RATIO_THRESHOLD && disagreement(-lag) > disagreement(0.0)).then_some(lag)
+    (gain > LIKELIHOOD_RATIO_THRESHOLD && disagreement(-lag) > disagreement(0.0))
+        .then_some(Lag { seconds: lag, is_at_the_edge: n.abs() == n_periods })
 }
 
 /// Heading by odometry, interpolated between the scans.
@@ -133,7 +149,7 @@ mod tests {
         let turns = seconds.windows(2).map(|pair| heading(pair[1], amplitude) - heading(pair[0], amplitude));
         // The scans err by ±1 mrad, alternating.
         let noisy = turns.zip([1e-3, -1e-3].into_iter().cycle()).map(|(turn, error)| Some(turn + error));
-        odometry_lag(&track, &[None].into_iter().chain(noisy).collect::<Vec<_>>())
+        odometry_lag(&track, &[None].into_iter().chain(noisy).collect::<Vec<_>>()).map(|lag| lag.seconds)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use crate::VELOCITY_TIMEOUT;
+use crate::{EventCounts, VELOCITY_TIMEOUT};
 
 /// A kind of record, for messages.
 pub type NamedRecordKind<'a> = (&'a str, fn(&RecordData) -> bool);
@@ -10,6 +10,15 @@ pub type NamedRecordKind<'a> = (&'a str, fn(&RecordData) -> bool);
 pub const ODOMETRY: NamedRecordKind<'static> = ("odometry", |data| {
     matches!(data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_) | RecordData::Ackermann(_))
 });
+
+/// Warns if a log has no increments and no velocities; `then` says what the system assumes.
+pub fn warn_of_no_odometry(events: &mut EventCounts, records: &[Record], then: &str) {
+    let moves =
+        |record: &Record| matches!(record.data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_));
+    if !records.iter().any(moves) {
+        events.warn("no_odometry", format!("the log has neither odometry increments nor velocities: {then}"));
+    }
+}
 
 /// Checks that two kinds of record overlap in time, if a log has both.
 ///

@@ -1,9 +1,9 @@
 use anyhow::{Result, ensure};
 use wayfix_appearance_cml::{AzimuthDirection, MapLearning, OmnidirectionalRing, PanoramaDescriptorParams};
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::errors::ReferencePath;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
-use wayfix_system_core::{HeldVelocity, IncrementPlausibilityCheck, check_velocity};
+use wayfix_system_core::{EventCounts, LoggedOdometry};
 use wayfix_table_log::{HeadingSource, PosedFrame, PosedFrameFolder, poses};
 
 use super::{
@@ -178,27 +178,17 @@ fn records(
 
 /// Images of a log with the odometry heading at each. Skips impossible odometry, which the system rejects and reports.
 fn image_headings(records: &[Record], velocity_timeout: f64) -> Vec<(&EncodedImage, f64)> {
-    let (mut held, mut plausible) = (HeldVelocity::default(), IncrementPlausibilityCheck::default());
-    let mut pose = Pose2::new(0.0, 0.0, 0.0);
+    let (mut odometry, mut unreported) = (LoggedOdometry::new(velocity_timeout), EventCounts::default());
+    let mut heading = 0.0;
     let mut headings = Vec::new();
     for record in records {
-        let mut advance = || {
-            let motion = held.motion_until(record.stamp, velocity_timeout);
-            pose = motion.map_or(pose, |motion| pose.compose(&motion.increment));
+        let motion = match &record.data {
+            RecordData::Image(_) => odometry.advance_to(record.stamp, &mut unreported),
+            _ => odometry.take(record, &mut unreported).unwrap_or_default(),
         };
-        match &record.data {
-            RecordData::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
-                pose = pose.compose(increment);
-            }
-            RecordData::Velocity(velocity) if check_velocity(*velocity).is_ok() => {
-                advance();
-                let _: Result<(), String> = held.hold(record.stamp, *velocity);
-            }
-            RecordData::Image(image) => {
-                advance();
-                headings.push((image, pose.heading()));
-            }
-            _ => {}
+        heading += motion.map_or(0.0, |motion| motion.increment.heading());
+        if let RecordData::Image(image) = &record.data {
+            headings.push((image, heading));
         }
     }
     headings

@@ -10,7 +10,8 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
 use wayfix_system_core::{
-    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay,
+    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, warn_of_large_errors,
+    warn_of_no_odometry, without_odometry_delay,
 };
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
@@ -94,6 +95,7 @@ pub fn run_streamed<R: Borrow<Record>>(
         system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
+    warn_of_no_odometry(system.events(), &plan.records, "the robot is taken to stand");
     let mut truth = ReferencePath::from_records(&plan.records).restarted();
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
@@ -104,13 +106,21 @@ pub fn run_streamed<R: Borrow<Record>>(
         bail!("no image could be used{why}");
     }
     system.warn_of_lag(params.odometry_delay);
-    Ok(CmlRun {
+    if system.localizer().map().is_empty() {
+        let text =
+            "no view was learned: by odometry the robot has never moved far enough from where it started";
+        system.events().warn("map_is_empty", text);
+    }
+    let mut run = CmlRun {
         task,
         system,
         truth,
         headings_are_measured: plan.headings_are_measured,
         notes: plan.notes.clone(),
-    })
+    };
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    warn_of_large_errors(run.system.events(), &run.truth, &samples);
+    Ok(run)
 }
 
 /// The true pose at the first motion or view. If truth begins later, odometry extrapolates its first pose back.

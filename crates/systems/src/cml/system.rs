@@ -10,8 +10,7 @@ use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, topics};
 use wayfix_system_core::{
-    EventCounts, HeldVelocity, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
-    check_velocity,
+    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
 };
 
 use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
@@ -25,10 +24,8 @@ pub type PanoramaMap = AppearanceMap<PanoramaDescriptor, AppearanceIndex<Panoram
 pub struct CmlSystem {
     reader: ViewDescriptorReader,
     pub(super) localizer: PanoramaLocalizer,
-    velocity: HeldVelocity,
-    velocity_timeout: f64,
-    plausible: IncrementPlausibilityCheck,
-    odometry: Option<Pose2<f64>>,
+    odometry: LoggedOdometry,
+    dead_reckoning: Option<Pose2<f64>>,
     /// Dead-reckoned motion since the first record.
     moved: Pose2<f64>,
     last_view: Option<PanoramaDescriptor>,
@@ -89,10 +86,8 @@ impl CmlSystem {
         Ok(Self {
             reader,
             localizer: PanoramaLocalizer::with_map(params.localizer, map, StartPosePrior::Anywhere)?,
-            velocity: HeldVelocity::default(),
-            velocity_timeout: params.velocity_timeout,
-            plausible: IncrementPlausibilityCheck::default(),
-            odometry: None,
+            odometry: LoggedOdometry::new(params.velocity_timeout),
+            dead_reckoning: None,
             moved: Pose2::identity(),
             last_view: None,
             turns: TurnHistory::default(),
@@ -163,7 +158,7 @@ impl CmlSystem {
     /// # Errors
     /// Returns an error if the start pose is invalid.
     pub fn start(&mut self, start: StartPosePrior) -> anyhow::Result<()> {
-        self.odometry = match &start {
+        self.dead_reckoning = match &start {
             StartPosePrior::Known(pose) => Some(*pose.mean()),
             _ => None,
         };
@@ -172,22 +167,24 @@ impl CmlSystem {
 
     pub(super) fn move_by(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
         self.localizer.predict(increment).map_err(|error| error.to_string())?;
-        self.odometry = self.odometry.map(|pose| pose.compose(increment));
+        self.dead_reckoning = self.dead_reckoning.map(|pose| pose.compose(increment));
         self.moved = self.moved.compose(increment);
         Ok(())
     }
 
     /// Predicts the pose to `stamp` with the held velocity.
     pub(super) fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
-        let Some(held) = self.velocity.motion_until(stamp, self.velocity_timeout) else { return Ok(()) };
-        if held.unknown_seconds > 0.0 {
-            let hold = self.velocity_timeout;
-            self.events.warn(
-                "motion_unknown",
-                format!("velocities are missing for more than {hold} s: the motion is unknown there (velocity_timeout)"),
-            );
+        let held = self.odometry.advance_to(stamp, &mut self.events);
+        held.map_or(Ok(()), |motion| self.move_as_logged(&motion))
+    }
+
+    fn move_as_logged(&mut self, motion: &LoggedMotion) -> Result<(), String> {
+        self.move_by(&motion.increment)?;
+        if motion.unknown_seconds == 0.0 {
+            return Ok(());
         }
-        self.move_by(&held.increment)
+        let covariance = self.odometry.unknown_motion(motion.unknown_seconds);
+        self.localizer.predict_unknown(&covariance).map_err(|error| error.to_string())
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
@@ -206,7 +203,7 @@ impl CmlSystem {
             stamp,
             pose: self.localizer.estimate().cloned(),
             is_certain: outcome.estimate.is_some(),
-            odometry: self.odometry,
+            odometry: self.dead_reckoning,
             nearest,
             n_detections: outcome.n_detections,
             best_match: outcome.best_match,
@@ -249,17 +246,13 @@ pub(super) fn gaussian(pose: &Pose2<f64>, sigmas: &PoseSigmas) -> anyhow::Result
 
 impl System for CmlSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
+        if let Some(motion) = self.odometry.take(record, &mut self.events)? {
+            return match &record.data {
+                RecordData::OdometryIncrement(increment) => self.move_through(record.stamp, increment),
+                _ => self.move_as_logged(&motion),
+            };
+        }
         match &record.data {
-            RecordData::OdometryIncrement(increment) => {
-                self.plausible.check(record.stamp, increment)?;
-                self.advance_to(record.stamp)?;
-                self.move_through(record.stamp, increment)
-            }
-            RecordData::Velocity(velocity) => {
-                check_velocity(*velocity)?;
-                self.advance_to(record.stamp)?;
-                self.velocity.hold(record.stamp, *velocity)
-            }
             RecordData::Image(image) => {
                 self.advance_to(record.stamp)?;
                 self.see(record.stamp, image)

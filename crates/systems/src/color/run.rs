@@ -11,8 +11,8 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_system_core::TrueStartPose;
 use wayfix_system_core::{
-    ODOMETRY, RunStep, System, check_overlap, drive, warn_of_no_overlap, warn_of_start,
-    without_odometry_delay,
+    ODOMETRY, RunStep, System, check_overlap, drive, warn_of_large_errors, warn_of_no_odometry,
+    warn_of_no_overlap, warn_of_start, without_odometry_delay,
 };
 
 use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose, totals::ColorTotals};
@@ -76,6 +76,9 @@ pub fn run_streamed<R: Borrow<Record>>(
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }
+    let assumed =
+        "between two images the robot may move at walking speed (`[localizer.odometry]`, …_without_odometry)";
+    warn_of_no_odometry(system.events(), overview, assumed);
     let (mut truth, mut totals) = (truth.restarted(), ColorTotals::default());
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
@@ -90,7 +93,10 @@ pub fn run_streamed<R: Borrow<Record>>(
     let estimated =
         system.frames().first().zip(system.latest()).map(|(first, last)| (first.stamp, last.stamp));
     warn_of_no_overlap(system.events(), &truth, estimated);
-    Ok(ColorRun { system, truth, totals })
+    let mut run = ColorRun { system, truth, totals };
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    warn_of_large_errors(run.system.events(), &run.truth, &samples);
+    Ok(run)
 }
 
 /// Number of camera frames in a log.

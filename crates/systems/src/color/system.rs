@@ -11,7 +11,9 @@ use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
-use wayfix_system_core::{EventCounts, IncrementPlausibilityCheck, MOST_ESTIMATES, Stopwatch, System};
+use wayfix_system_core::{
+    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, Stopwatch, System, VELOCITY_TIMEOUT,
+};
 
 use super::{ClassificationCounts, ColorSystemParams, tally};
 
@@ -36,8 +38,9 @@ pub struct ColorSystem {
     labels: Option<(Stamp, EncodedImage)>,
     localizer: Option<Localizer>,
     pending: Pending,
-    plausible: IncrementPlausibilityCheck,
-    odometry: Option<Pose2<f64>>,
+    last_image: Option<LastImage>,
+    odometry: LoggedOdometry,
+    dead_reckoning: Option<Pose2<f64>>,
     frames: Decimated<ColorFrameResult>,
     latest: Option<ColorFrameResult>,
     table: Option<ColorLookUpTable>,
@@ -48,7 +51,15 @@ pub struct ColorSystem {
 #[derive(Clone, Copy, Debug, Default)]
 struct Pending {
     increment: Option<Pose2<f64>>,
+    /// Time of it without a measured motion, s.
+    unknown_seconds: f64,
     since: Option<Stamp>,
+}
+
+/// The last image that was used, and the motion since.
+struct LastImage {
+    image: EncodedImage,
+    moved: Pose2<f64>,
 }
 
 /// Result of one frame.
@@ -96,7 +107,7 @@ impl ColorSystem {
         start: StartPose,
         seed: u64,
     ) -> Self {
-        let odometry = match start {
+        let dead_reckoning = match start {
             StartPose::Near(pose) => Some(pose),
             StartPose::Anywhere => None,
         };
@@ -111,8 +122,9 @@ impl ColorSystem {
             labels: None,
             localizer: None,
             pending: Pending::default(),
-            plausible: IncrementPlausibilityCheck::default(),
-            odometry,
+            last_image: None,
+            odometry: LoggedOdometry::new(VELOCITY_TIMEOUT),
+            dead_reckoning,
             frames: Decimated::new(MOST_ESTIMATES),
             latest: None,
             table: None,
@@ -179,18 +191,39 @@ impl ColorSystem {
         Ok(classified)
     }
 
-    fn move_by(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
-        self.plausible.check(stamp, increment)?;
+    fn move_by(&mut self, motion: &LoggedMotion) {
         let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
-        self.pending.increment = Some(so_far.compose(increment));
-        if self.pending.since.is_some() {
-            self.odometry = self.odometry.map(|pose| pose.compose(increment)); // the start is the pose at the first image
+        self.pending.increment = Some(so_far.compose(&motion.increment));
+        self.pending.unknown_seconds += motion.unknown_seconds;
+        if let Some(LastImage { moved, .. }) = &mut self.last_image {
+            *moved = moved.compose(&motion.increment);
         }
+        if self.pending.since.is_some() {
+            // The start is the pose at the first image.
+            self.dead_reckoning = self.dead_reckoning.map(|pose| pose.compose(&motion.increment));
+        }
+    }
+
+    /// Refuses an image that repeats the last one although the robot has turned by more than a pixel, or moved as far as turns a view at 1 m so.
+    fn check_is_new(&mut self, image: &EncodedImage, info: &CameraInfo) -> Result<(), String> {
+        if let Some(LastImage { image: last, moved }) = &self.last_image
+            && last == image
+        {
+            let pixels = (moved.translation.norm() + moved.heading().abs()) * info.fx;
+            return match pixels > 1.0 {
+                true => Err(format!(
+                    "the image repeats the one before, although odometry has moved it by some {pixels:.0} pixels: the camera hangs"
+                )),
+                false => Ok(()),
+            };
+        }
+        self.last_image = Some(LastImage { image: image.clone(), moved: Pose2::identity() });
         Ok(())
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
         let info = self.camera.ok_or("no camera info before this image")?;
+        self.check_is_new(image, &info)?;
         let mount = self.mount.ok_or("no camera mount before this image")?;
         let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
         let image =
@@ -212,7 +245,7 @@ impl ColorSystem {
             stamp,
             pose: outcome.estimate.pose,
             status: outcome.status,
-            odometry: self.odometry,
+            odometry: self.dead_reckoning,
             effective_particles: outcome.effective_particles,
             n_particles: outcome.n_particles,
             fit: outcome.fit,
@@ -245,12 +278,19 @@ impl ColorSystem {
             )?),
         };
         if let Some(since) = self.pending.since {
-            let step =
-                OdometryStep { increment: self.pending.increment, seconds: stamp.seconds_since(since) };
-            localizer.predict(&step, &mut self.rng)?;
+            let Pending { increment, unknown_seconds, .. } = self.pending;
+            let seconds = stamp.seconds_since(since);
+            localizer.predict(
+                &OdometryStep { increment, seconds: (seconds - unknown_seconds).max(0.0) },
+                &mut self.rng,
+            )?;
+            if unknown_seconds > 0.0 {
+                let unknown = OdometryStep { increment: None, seconds: unknown_seconds };
+                localizer.predict(&unknown, &mut self.rng)?;
+            }
         }
         // The motion is already predicted, whether or not the image is usable.
-        self.pending = Pending { increment: None, since: Some(stamp) };
+        self.pending = Pending { since: Some(stamp), ..Pending::default() };
         Ok(localizer.update(image, mount, &mut self.rng)?)
     }
 
@@ -275,9 +315,15 @@ impl System for ColorSystem {
             RecordData::CameraInfo(info) => self.camera = Some(*info),
             RecordData::CameraMount(mount) => self.mount = Some(*mount),
             RecordData::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
-            RecordData::OdometryIncrement(increment) => self.move_by(record.stamp, increment)?,
-            RecordData::Image(image) => self.see(record.stamp, image)?,
-            _ => {}
+            RecordData::Image(image) => {
+                let held = self.odometry.advance_to(record.stamp, &mut self.events);
+                held.iter().for_each(|motion| self.move_by(motion));
+                self.see(record.stamp, image)?;
+            }
+            _ => {
+                let motion = self.odometry.take(record, &mut self.events)?;
+                motion.iter().for_each(|motion| self.move_by(motion));
+            }
         }
         Ok(())
     }

@@ -2,4 +2,5 @@
 
 mod cml_external;
 mod color;
+mod odometry;
 mod stop;

@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 213] = [
+const RENAMED: [(&str, &str); 212] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -168,7 +168,6 @@ const RENAMED: [(&str, &str); 213] = [
     ("recognition_response_share", "min_recognition_response_share"),
     ("recognize_above", "recognize_above_psr"),
     ("recognize_share", "min_recognition_response_share"),
-    ("recovery", "kidnapping_test"),
     ("reject_outliers", "skip_outlier_views_in_mapping"),
     ("relocation", "relocalization"),
     ("response_width", "target_response_width"),
@@ -224,12 +223,14 @@ pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>
 }
 
 /// Old name, a name beside which it stood, and what replaces it.
-const REPLACED: [(&str, &str, &str); 14] = [
+const REPLACED: [(&str, &str, &str); 16] = [
     ("doubtful_fit", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("fast_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("lost_fit", "relocalization", "a pose is lost if the last frames do not support it over the background"),
     ("resample_below", "relocalization", "every frame resamples"),
     ("slow_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
+    ("kidnapping_test", "relocalization", "`relocalization.false_alarms_per_km = 0` switches the test off"),
+    ("recovery", "relocalization", "`relocalization.false_alarms_per_km = 0` switches the test off"),
     ("delay", "unimodal_min_weight", "a view waits until the robot is a match radius away"),
     (
         "insertion",

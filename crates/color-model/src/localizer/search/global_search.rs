@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
+use wayfix_color_map::PinholeCamera;
 use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
@@ -16,7 +17,7 @@ use super::{
     trajectory::Trajectory,
 };
 use crate::{
-    ColorModelError, LightingTracker, PixelClassifier,
+    ColorModelError, LightingTracker, PixelClassifier, PixelLikelihoodParams,
     localizer::{
         LocalizerParams,
         buffer::BufferedFrame,
@@ -64,6 +65,30 @@ pub(crate) struct Found<T> {
     pub(crate) is_present: bool,
 }
 
+/// As many poses take a minute and a gigabyte.
+const MOST_SAMPLES: usize = 1 << 20;
+
+/// Whether a search of an area can end.
+pub(crate) fn check_area(
+    area: &Area,
+    camera: &PinholeCamera,
+    params: &LocalizerParams,
+) -> Result<(), ColorModelError> {
+    let n_cells = area.cells(&cell(camera, &params.pixels)).iter().map(|n| *n as f64).product::<f64>();
+    let n_samples = params.search.samples_per_place * n_cells;
+    if n_samples <= MOST_SAMPLES as f64 {
+        return Ok(());
+    }
+    let [width, depth] = area.size();
+    Err(ColorModelError::MapTooLarge { width, depth, n_samples, most: MOST_SAMPLES })
+}
+
+/// Size of a cell: a turn by a tile shows other colours in it, and no heading of a cell is farther from its middle.
+fn cell(camera: &PinholeCamera, pixels: &PixelLikelihoodParams) -> Vector3<f64> {
+    let turn = f64::from(2 * pixels.tile_pixels) / camera.fx();
+    Vector3::new(PLACE_RADIUS, PLACE_RADIUS, turn.min(PLACE_RADIUS))
+}
+
 impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
     pub(crate) fn new(
         scene: Scene<'a, ()>,
@@ -87,9 +112,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                 detections.add(&labels, at, frame, &fine.camera)?;
             }
         }
-        // A turn by a tile shows other colours in it: no heading of a cell is farther from its middle.
-        let turn = f64::from(2 * scene.pixels.tile_pixels) / scene.camera.fx();
-        let cell = Vector3::new(PLACE_RADIUS, PLACE_RADIUS, turn.min(PLACE_RADIUS));
+        let cell = cell(&scene.camera, scene.pixels);
         Ok(Self {
             evidence: Evidence { scene, start, params, lights, frames, independent_shares, levels },
             area,
@@ -237,12 +260,14 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             let at = log.0;
             let prior = |trajectory: &Trajectory| trajectory.log_prior_of_camera(at);
             let gain = new_log.1 + prior(&moved.trajectory) - log.1 - prior(&candidate.trajectory);
-            if gain > 0.0 {
+            // Two impossible frames have no gain.
+            let is_better = gain > 0.0;
+            if is_better {
                 candidate.trajectory.take_camera_error(&moved.trajectory, at);
                 candidate.log_evidence += gain;
                 *log = *new_log;
             }
-            candidate.steps.sway[at][axis] *= STEP_FACTORS[usize::from(gain <= 0.0)];
+            candidate.steps.sway[at][axis] *= STEP_FACTORS[usize::from(!is_better)];
         }
     }
 

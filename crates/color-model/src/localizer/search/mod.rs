@@ -10,6 +10,6 @@ mod pyramid;
 mod start;
 mod trajectory;
 
-pub(crate) use global_search::{Found, Search};
+pub(crate) use global_search::{Found, Search, check_area};
 pub(crate) use start::Area;
 pub use start::StartPosePrior;

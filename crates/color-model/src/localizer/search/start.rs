@@ -41,16 +41,21 @@ impl Area {
         (0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&pose.translation[axis]))
     }
 
+    /// Lengths along x and y, m.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        [0, 1].map(|axis| self.max[axis] - self.min[axis])
+    }
+
     /// Number of distinguishable places: of cells of the size of a place.
     pub(crate) fn n_places(&self) -> usize {
-        let size = (self.max[0] - self.min[0]) * (self.max[1] - self.min[1]);
-        ((size * std::f64::consts::TAU / PLACE_RADIUS.powi(3)) as usize).max(1)
+        let [width, depth] = self.size();
+        ((width * depth * std::f64::consts::TAU / PLACE_RADIUS.powi(3)) as usize).max(1)
     }
 
     /// Number of cells of at most this size along x, y (m) and the heading (rad).
     pub(crate) fn cells(&self, size: &Vector3<f64>) -> [usize; 3] {
-        let side = |axis: usize| self.max[axis] - self.min[axis];
-        let sides = [side(0) / size.x, side(1) / size.y, std::f64::consts::TAU / size.z];
+        let [width, depth] = self.size();
+        let sides = [width / size.x, depth / size.y, std::f64::consts::TAU / size.z];
         sides.map(|n| (n.ceil() as usize).max(1))
     }
 

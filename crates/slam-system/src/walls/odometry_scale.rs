@@ -1,0 +1,136 @@
+use nalgebra::{Matrix3, Vector3};
+use wayfix_estimation_traits::Pose2;
+use wayfix_scan_match::ScanAlignment;
+use wayfix_system_core::EventCounts;
+
+/// Motions by scan matching alone as a linear function of those by odometry, from keyframe to keyframe.
+///
+/// $`t_s = \begin{pmatrix} p & -q \\ q & p \end{pmatrix} t_o,\; θ_s = b\, θ_o`$; least squares with the information matrix of each match, so a corridor says nothing of the
+/// motion along it. For a laser and odometry that agree $`(p, q, b) = (1, 0, 1)`$; a laser that is mounted at an angle turns $`t_s`$, a wrong unit scales it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct OdometryScale {
+    information: Matrix3<f64>,
+    vector: Vector3<f64>,
+    /// Sum of squares of the right side, for the residuals.
+    square: f64,
+    n: usize,
+}
+
+/// Larger differences are no matter of calibration: an uncalibrated wheeled robot errs by a few percent. [Borenstein & Feng 1996]
+const TOLERANCE: f64 = 0.2;
+
+/// Standard errors that a difference has beyond the tolerance before it is said.
+const N_SIGMAS: f64 = 3.0;
+
+impl OdometryScale {
+    /// Adds the motion between two keyframes by odometry, and by a match whose linearization is about `guess`.
+    pub(super) fn add(&mut self, odometry: &Pose2<f64>, guess: &Pose2<f64>, found: &ScanAlignment) {
+        let (to_guess, moved) = (guess.rotation_matrix().transpose(), odometry.translation);
+        let mut design = Matrix3::zeros();
+        design.fixed_view_mut::<2, 1>(0, 0).copy_from(&(to_guess * moved));
+        design
+            .fixed_view_mut::<2, 1>(0, 1)
+            .copy_from(&(to_guess * nalgebra::Vector2::new(-moved.y, moved.x)));
+        design.m33 = odometry.heading();
+        let at_guess = (to_guess * guess.translation).push(guess.heading());
+        // Every match counts alike: matches that share a wall err together, whatever the number of their points.
+        let scale = found.information.trace();
+        let (information, vector) = (found.information / scale, found.information_vector / scale);
+        let right = vector + information * at_guess;
+        let Some(motion) =
+            found.information.try_inverse().map(|inverse| at_guess + inverse * found.information_vector)
+        else {
+            return;
+        };
+        self.information += design.transpose() * information * design;
+        self.vector += design.transpose() * right;
+        self.square += motion.dot(&(information * motion));
+        self.n += 1;
+    }
+
+    /// $`(p, q, b)`$ and their standard errors by the residuals; `None` before odometry has moved and turned.
+    fn estimate(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let inverse = self.information.try_inverse()?;
+        let estimate = inverse * self.vector;
+        let residual = (self.square - estimate.dot(&self.vector)).max(0.0);
+        let freedom = (3 * self.n).checked_sub(3).filter(|freedom| *freedom > 0)?;
+        let variances = inverse.diagonal() * residual / freedom as f64;
+        let sigmas = variances.map(f64::sqrt);
+        (estimate.iter().chain(&sigmas).all(|value| value.is_finite())).then_some((estimate, sigmas))
+    }
+
+    /// Says when scans contradict odometry beyond calibration.
+    pub(super) fn warn(&self, events: &mut EventCounts) {
+        let Some((estimate, sigmas)) = self.estimate() else { return };
+        let off = estimate - Vector3::new(1.0, 0.0, 1.0);
+        let is_off = off.zip_map(&sigmas, |off, sigma| off.abs() > TOLERANCE + N_SIGMAS * sigma);
+        if is_off.iter().any(|is_off| *is_off) {
+            let [p, q, b] = estimate.into();
+            let (scale, angle) = (p.hypot(q), q.atan2(p).to_degrees());
+            events.warn(
+                "scans_contradict_odometry",
+                format!(
+                    "between keyframes, scan matching finds {scale:.2} times the distance of odometry, in a direction turned by {angle:.0}°, and {b:.2} times its turn: check units and scale of both, the sign of turns, where the laser is mounted (`laser_pose`), and whether it sees the robot itself"
+                ),
+            );
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayfix_estimation_traits::{LieGroup, Manifold};
+
+    /// A log of 40 motions of which scans see `seen(motion)` with ±1 mm, linearized about odometry.
+    fn after(seen: impl Fn(&Pose2<f64>) -> Pose2<f64>, information: Matrix3<f64>) -> OdometryScale {
+        let mut scale = OdometryScale::default();
+        for step in 0..40 {
+            let odometry = Pose2::new(0.25, 0.01, 0.1 * f64::from(step).sin());
+            let noise = Pose2::new(0.001 * f64::from(step % 2 * 2 - 1), 0.0, 0.0);
+            let difference = odometry.local(&seen(&odometry).compose(&noise));
+            let found = ScanAlignment {
+                pose: odometry,
+                correction: difference,
+                information,
+                information_vector: information * difference,
+                guess_scale: 1.0,
+                overlap: 1.0,
+            };
+            scale.add(&odometry, &odometry, &found);
+        }
+        scale
+    }
+
+    fn is_said(scale: &OdometryScale) -> bool {
+        let mut events = EventCounts::default();
+        scale.warn(&mut events);
+        events.get("scans_contradict_odometry") == 1
+    }
+
+    #[test]
+    fn wrong_units_signs_and_mounts_are_said() {
+        let all = Matrix3::from_diagonal_element(1e4);
+        let mirrored = |u: &Pose2<f64>| Pose2::new(u.x(), -u.y(), -u.heading());
+        let feet = |u: &Pose2<f64>| Pose2::new(0.3048 * u.x(), 0.3048 * u.y(), u.heading());
+        let sideways = |u: &Pose2<f64>| Pose2::new(-u.y(), u.x(), u.heading());
+        let itself = |_: &Pose2<f64>| Pose2::identity();
+        assert!(is_said(&after(mirrored, all)) && is_said(&after(feet, all)));
+        assert!(is_said(&after(sideways, all)) && is_said(&after(itself, all)));
+    }
+
+    #[test]
+    fn calibration_and_corridors_are_not() {
+        let all = Matrix3::from_diagonal_element(1e4);
+        let calibrated = |u: &Pose2<f64>| Pose2::new(1.1 * u.x(), 1.1 * u.y(), 0.9 * u.heading());
+        assert!(!is_said(&after(calibrated, all)));
+        let (estimate, _) = after(calibrated, all).estimate().unwrap();
+        assert!((estimate - Vector3::new(1.1, 0.0, 0.9)).norm() < 0.02, "{estimate}");
+        // A corridor along x: a match claims to stand there, and knows nothing of it.
+        let corridor = Matrix3::from_diagonal(&Vector3::new(1e-3, 1e4, 1e4));
+        let stands = |u: &Pose2<f64>| Pose2::new(0.0, u.y(), u.heading());
+        let scale = after(stands, corridor);
+        assert!(scale.estimate().is_none_or(|(_, sigmas)| sigmas.x > 0.0));
+        assert!(!is_said(&OdometryScale::default()));
+    }
+}

@@ -1,0 +1,133 @@
+use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Record, RecordData, Stamp};
+use wayfix_slam_ekf::MotionStatistics;
+
+use super::{EventCounts, HeldVelocity, IncrementPlausibilityCheck, check_velocity};
+
+/// The kind of odometry that moves a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OdometryRecordKind {
+    /// Velocities, each held until the next.
+    Velocities,
+    /// Increments.
+    Increments,
+    /// Speed and steering of a car, each held until the next.
+    Drives,
+}
+
+impl OdometryRecordKind {
+    /// The kind of a record; `None` when it is no odometry.
+    pub fn of(data: &RecordData) -> Option<Self> {
+        match data {
+            RecordData::Velocity(_) => Some(Self::Velocities),
+            RecordData::OdometryIncrement(_) => Some(Self::Increments),
+            RecordData::Ackermann(_) => Some(Self::Drives),
+            _ => None,
+        }
+    }
+}
+
+/// The motion of a robot by the increments or the velocities of a log.
+///
+/// If a log records its motion in both kinds, the kind that comes first moves the robot, and the other is counted and ignored. A velocity holds until the
+/// next, at most for the time-out; the motion after that is unknown.
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_sensor_log::{Record, RecordData, Stamp, Velocity};
+/// use wayfix_system_core::{EventCounts, LoggedOdometry};
+/// let record = |seconds, data| Record { stamp: Stamp::from_seconds(seconds).unwrap(), data };
+/// let forward = record(0.0, RecordData::Velocity(Velocity { linear: 0.5, angular: 0.0 }));
+/// let same_motion = record(0.5, RecordData::OdometryIncrement(Pose2::new(0.25, 0.0, 0.0)));
+/// let (mut odometry, mut events) = (LoggedOdometry::new(1.0), EventCounts::default());
+/// assert!(odometry.take(&forward, &mut events)?.is_none()); // it moves the robot from here on
+/// assert!(odometry.take(&same_motion, &mut events)?.is_none());
+/// let motion = odometry.advance_to(Stamp::from_seconds(3.0).unwrap(), &mut events).unwrap();
+/// assert!((motion.increment.x() - 0.5).abs() < 1e-12 && (motion.unknown_seconds - 2.0).abs() < 1e-9);
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LoggedOdometry {
+    velocity_timeout: f64,
+    kind: Option<OdometryRecordKind>,
+    plausible: IncrementPlausibilityCheck,
+    velocity: HeldVelocity,
+    /// Of the last increment.
+    last: Option<Stamp>,
+    statistics: MotionStatistics,
+}
+
+/// A motion that odometry measured, and the time after it in which it did not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoggedMotion {
+    /// In the robot frame before it.
+    pub increment: Pose2<f64>,
+    /// Time without a measured motion, s.
+    pub unknown_seconds: f64,
+}
+
+impl LoggedOdometry {
+    /// Odometry whose velocities hold for at most `velocity_timeout`, s.
+    pub fn new(velocity_timeout: f64) -> Self {
+        Self {
+            velocity_timeout,
+            kind: None,
+            plausible: IncrementPlausibilityCheck::default(),
+            velocity: HeldVelocity::default(),
+            last: None,
+            statistics: MotionStatistics::default(),
+        }
+    }
+
+    /// Takes a record. Returns the motion up to its stamp, if it is odometry and there is any.
+    ///
+    /// # Errors
+    /// Returns a description of an impossible motion, which is left out.
+    pub fn take(
+        &mut self,
+        record: &Record,
+        events: &mut EventCounts,
+    ) -> Result<Option<LoggedMotion>, String> {
+        let Some(kind) = OdometryRecordKind::of(&record.data) else { return Ok(None) };
+        if *self.kind.get_or_insert(kind) != kind {
+            events.count("second_odometry_source_ignored");
+            return Ok(None);
+        }
+        match &record.data {
+            RecordData::OdometryIncrement(increment) => {
+                self.plausible.check(record.stamp, increment)?;
+                if let Some(last) = self.last.replace(record.stamp) {
+                    self.statistics.add(increment, record.stamp.seconds_since(last));
+                }
+                Ok(Some(LoggedMotion { increment: *increment, unknown_seconds: 0.0 }))
+            }
+            RecordData::Velocity(velocity) => {
+                check_velocity(*velocity)?;
+                let motion = self.advance_to(record.stamp, events);
+                self.velocity.hold(record.stamp, *velocity)?;
+                Ok(motion)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// The motion by the velocity that holds, from the last call to `stamp`.
+    pub fn advance_to(&mut self, stamp: Stamp, events: &mut EventCounts) -> Option<LoggedMotion> {
+        let held = self.velocity.motion_until(stamp, self.velocity_timeout)?;
+        self.statistics.add(&held.increment, held.seconds);
+        if held.unknown_seconds > 0.0 {
+            let timeout = self.velocity_timeout;
+            events.warn(
+                "motion_unknown",
+                format!("velocities are missing for more than {timeout} s: the motion is unknown there (velocity_timeout)"),
+            );
+        }
+        Some(LoggedMotion { increment: held.increment, unknown_seconds: held.unknown_seconds })
+    }
+
+    /// Covariance of an unknown motion over `seconds`: at the RMS speed and turn rate so far, in an unknown direction.
+    pub fn unknown_motion(&self, seconds: f64) -> Matrix3<f64> {
+        self.statistics.unknown_motion(seconds)
+    }
+}

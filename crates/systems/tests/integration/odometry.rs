@@ -1,0 +1,144 @@
+//! Increments, velocities, both, and none, in the localizers of images.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use wayfix_appearance_cml::PanoramaDescriptorParams;
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
+use wayfix_gaussian_core::Gaussian;
+use wayfix_sensor_log::{LogOpenOptions, Record, RecordData, Velocity, open};
+use wayfix_system_core::System;
+use wayfix_systems::{
+    cml::{
+        self, CameraViewGeometry, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask, PanoramaMap,
+        ViewDescriptorReader,
+    },
+    color::{self, ColorSystemParams, priors, read_map},
+};
+
+/// The first `seconds` of a stored log.
+fn log(name: &str, seconds: f64) -> Vec<Record> {
+    let path = format!("{}/../../fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
+    let (records, _) = open(&path, &LogOpenOptions::default()).expect("a stored log").read_all();
+    let end = records.first().expect("records").stamp.seconds() + seconds;
+    records.into_iter().filter(|record| record.stamp.seconds() < end).collect()
+}
+
+fn is_increment(record: &Record) -> bool {
+    matches!(record.data, RecordData::OdometryIncrement(_))
+}
+
+/// The velocities that make the increments of a log, each from the increment before on. A velocity has no sideways part.
+fn velocities(records: &[Record]) -> Vec<Record> {
+    let increments: Vec<&Record> = records.iter().filter(|record| is_increment(record)).collect();
+    let velocity = |pair: &[&Record]| {
+        let RecordData::OdometryIncrement(increment) = &pair[1].data else { return None };
+        let rates: Vector3<f64> = increment.log() / pair[1].stamp.seconds_since(pair[0].stamp);
+        let data = RecordData::Velocity(Velocity { linear: rates.x, angular: rates.z });
+        Some(Record { stamp: pair[0].stamp, data })
+    };
+    increments.windows(2).filter_map(velocity).collect()
+}
+
+/// Sorted by stamp; records of one stamp keep their order, those of `first` before.
+fn merged(first: Vec<Record>, second: Vec<Record>) -> Vec<Record> {
+    let mut all = first;
+    all.extend(second);
+    all.sort_by_key(|record| record.stamp);
+    all
+}
+
+fn without_increments(records: &[Record]) -> Vec<Record> {
+    records.iter().filter(|record| !is_increment(record)).cloned().collect()
+}
+
+/// The estimates of a run, and how often an event happened.
+struct Outcome {
+    poses: Vec<Gaussian<Pose2<f64>>>,
+    event: Box<dyn Fn(&str) -> u64>,
+}
+
+impl Outcome {
+    fn last(&self) -> &Gaussian<Pose2<f64>> {
+        self.poses.last().expect("estimates")
+    }
+}
+
+fn outcome(poses: Vec<Gaussian<Pose2<f64>>>, system: &mut impl System) -> Outcome {
+    let counts = system.events().counts().clone();
+    Outcome { poses, event: Box::new(move |name| counts.get(name).copied().unwrap_or(0)) }
+}
+
+/// Appearance maps on a drive through a store.
+fn cml(records: Vec<Record>) -> Outcome {
+    let mut params = CmlParams::default();
+    let plan = CmlRunPlan::of_log(records, 0, &mut params, &CameraViewGeometry::default()).expect("a plan");
+    let start = cml::first_true_pose(&plan.records).expect("truth");
+    let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
+    let system = CmlSystem::new(&params, reader, PanoramaMap::default()).expect("valid parameters");
+    let (task, start) = (CmlTask::ConcurrentMapBuilding, CmlStartPose::Exactly(start));
+    let mut run = cml::run(system, &plan, task, start, &params, 1, |_| {}).expect("usable views");
+    let poses = run.system.frames().iter().filter_map(|frame| frame.pose.clone()).collect();
+    outcome(poses, &mut run.system)
+}
+
+/// Colour localization from near the truth.
+fn color(records: &[Record]) -> Outcome {
+    let field = format!("{}/../../fixtures/four-legged-field.toml", env!("CARGO_MANIFEST_DIR"));
+    let params = ColorSystemParams::default();
+    let bank = priors::bank(&priors::built_in().expect("priors"), &params).expect("a bank");
+    let map = Arc::new(read_map(field.as_ref()).expect("a map"));
+    let mut run = color::run(records, map, bank, &params, None, 1, |_| {}).expect("images");
+    let poses = run.system.frames().iter().map(|frame| frame.pose.clone()).collect();
+    outcome(poses, &mut run.system)
+}
+
+const SECOND_SOURCE: &str = "second_odometry_source_ignored";
+
+#[test]
+fn motion_told_twice_moves_once() {
+    let store = log("store_area.mcap", 20.0);
+    let (once, twice) = (cml(store.clone()), cml(merged(store.clone(), velocities(&store))));
+    assert_eq!(once.poses, twice.poses);
+    assert!((once.event)(SECOND_SOURCE) == 0 && (twice.event)(SECOND_SOURCE) > 20);
+
+    let field = log("color_bright.mcap", 3.0);
+    let (once, twice) = (color(&field), color(&merged(field.clone(), velocities(&field))));
+    assert_eq!(once.poses, twice.poses);
+    assert!((once.event)(SECOND_SOURCE) == 0 && (twice.event)(SECOND_SOURCE) > 20);
+}
+
+#[test]
+fn velocities_move_the_robot_as_increments_do() {
+    let store = log("store_area.mcap", 20.0);
+    let by_velocities = cml(merged(velocities(&store), without_increments(&store)));
+    let apart = cml(store).last().mean().local(by_velocities.last().mean());
+    assert!(apart.xy().norm() < 0.05 && apart.z.abs() < 0.05, "{apart}");
+
+    let field = log("color_bright.mcap", 6.0);
+    let by_velocities = color(&merged(velocities(&field), without_increments(&field)));
+    assert_eq!((by_velocities.event)("no_odometry"), 0);
+    let apart = color(&field).last().mean().local(by_velocities.last().mean());
+    assert!(apart.xy().norm() < 0.1 && apart.z.abs() < 0.1, "{apart}");
+}
+
+#[test]
+fn missing_velocities_widen_the_belief() {
+    let store = log("store_area.mcap", 20.0);
+    let begin = store.first().expect("records").stamp.seconds();
+    let mut moved = velocities(&store);
+    let whole = cml(merged(moved.clone(), without_increments(&store)));
+    moved.retain(|record| record.stamp.seconds() < begin + 14.0);
+    let gap = cml(merged(moved, without_increments(&store)));
+    assert!((whole.event)("motion_unknown") == 0 && (gap.event)("motion_unknown") > 0);
+    let variance = |outcome: &Outcome| outcome.last().covariance().trace();
+    assert!(variance(&gap) > 2.0 * variance(&whole), "{} {}", variance(&gap), variance(&whole));
+}
+
+#[test]
+fn log_without_odometry_says_so() {
+    let (store, field) = (log("store_area.mcap", 5.0), log("color_bright.mcap", 1.0));
+    assert_eq!((cml(without_increments(&store)).event)("no_odometry"), 1);
+    assert_eq!((color(&without_increments(&field)).event)("no_odometry"), 1);
+    assert_eq!((color(&field).event)("no_odometry"), 0);
+}
