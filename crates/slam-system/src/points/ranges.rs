@@ -1,4 +1,7 @@
-use std::ops::RangeInclusive;
+use std::{
+    f64::consts::{PI, TAU},
+    ops::RangeInclusive,
+};
 
 use wayfix_slam_ekf::{JointCompatibility, LandmarkConfirmationParams, NearestNeighbour, SlamError};
 
@@ -14,6 +17,10 @@ const DELAY: Range = (0.0..=60.0, "from 0 to 60 s");
 const NOT_NEGATIVE: Range = (0.0..=1e6, "from 0 to 1e6");
 /// A sensor without noise leaves nothing to invert.
 const SENSOR_NOISE: Range = (1e-9..=1e6, "from 1e-9 to 1e6");
+/// A standard deviation of an angle.
+const ANGLE_NOISE: Range = (1e-9..=PI, "from 1e-9 to π rad");
+/// Beyond a turn an angle is in degrees.
+const ANGLE: Range = (-TAU..=TAU, "from -2π to 2π rad");
 const TIMES_SEEN: Range = (1.0..=1e6, "from 1 to 1e6");
 /// No robot is larger than a kilometre.
 const PLACE: Range = (-1e3..=1e3, "from -1000 to 1000");
@@ -29,7 +36,7 @@ impl PointSlamParams {
     /// let mut params = PointSlamParams::of(RobotProfile::Generic).validated()?;
     /// params.sensor.bearing_sigma = -0.01;
     /// let error = params.validated().unwrap_err().to_string();
-    /// assert_eq!(error, "parameter sensor.bearing_sigma is -0.01, must be from 1e-9 to 1e6");
+    /// assert_eq!(error, "parameter sensor.bearing_sigma is -0.01, must be from 1e-9 to π rad");
     /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
     /// ```
     ///
@@ -54,15 +61,16 @@ impl PointSlamParams {
             number!(robot.range_scale_sigma, NOT_NEGATIVE),
             number!(mounting.sensor_x, PLACE),
             number!(mounting.sensor_y, PLACE),
-            number!(mounting.sensor_heading, PLACE),
+            number!(mounting.sensor_heading, ANGLE),
             number!(mounting.antenna_x, PLACE),
             number!(mounting.antenna_y, PLACE),
+            ("start_pose (heading)", self.start_pose.map_or(0.0, |[.., heading]| heading), ANGLE),
             number!(vehicle.wheel_base, WHEEL_BASE),
             number!(vehicle.wheel_offset, PLACE),
             number!(sensor.range_sigma, NOT_NEGATIVE),
             number!(sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
-            number!(sensor.bearing_sigma, SENSOR_NOISE),
+            number!(sensor.bearing_sigma, ANGLE_NOISE),
             number!(in "sensor", correlated_noise.independent_range_sigma, NOT_NEGATIVE),
             number!(in "sensor", correlated_noise.independent_range_sigma_per_meter, NOT_NEGATIVE),
             (
@@ -70,7 +78,7 @@ impl PointSlamParams {
                 nearest_own_range_sigma,
                 SENSOR_NOISE,
             ),
-            number!(in "sensor", correlated_noise.independent_bearing_sigma, SENSOR_NOISE),
+            number!(in "sensor", correlated_noise.independent_bearing_sigma, ANGLE_NOISE),
             number!(in "sensor", correlated_noise.common_range_sigma_per_meter, NOT_NEGATIVE),
             number!(in "sensor", correlated_noise.common_bearing_sigma, NOT_NEGATIVE),
             number!(in "filter", merging.min_separation, NOT_NEGATIVE),

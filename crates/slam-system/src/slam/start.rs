@@ -37,12 +37,8 @@ const LARGEST_GROSS_SHARE: f64 = 0.1;
 
 /// Says when more observations lie outside their gates than outliers of a sensor explain.
 pub(crate) fn warn_of_gross_errors(events: &mut EventCounts) {
-    let outside = [
-        "observation_downweighted",
-        "observation_rejected_by_gate",
-        "observation_neither_known_nor_new",
-        "tentative_landmark_restarted",
-    ];
+    let outside =
+        ["observation_downweighted", "observation_rejected_by_gate", "tentative_landmark_restarted"];
     let n_outside: u64 = outside.iter().map(|name| events.get(name)).sum();
     let n_all = n_outside + events.get("observation_accepted");
     let share = n_outside as f64 / n_all.max(1) as f64;

@@ -339,6 +339,13 @@ impl WallSlamFrontEnd {
         } else if let Ok(Some(_)) = &step {
             events.count("scan_deskewed");
         }
+        let distance = laser.translation.norm();
+        if distance > scan.range_max {
+            let far = format!(
+                "the laser is mounted {distance:.1} m from the robot's centre, farther than it sees: check the units of its transform or of `laser_pose`"
+            );
+            events.warn("laser_mount_implausible", far);
+        }
         PlacedScan { scan: scan.clone(), laser: *laser, beam_step: step.unwrap_or(None) }
     }
 

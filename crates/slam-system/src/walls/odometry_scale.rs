@@ -22,6 +22,9 @@ const TOLERANCE: f64 = 0.2;
 /// Standard errors that a difference has beyond the tolerance before it is said.
 const N_SIGMAS: f64 = 3.0;
 
+/// Matches that determine a direction less than this do not count: residuals along it are arbitrary.
+const LEAST_CONDITION: f64 = 1e-3;
+
 impl OdometryScale {
     /// Adds the motion between two keyframes by odometry, and by a match whose linearization is about `guess`.
     pub(super) fn add(&mut self, odometry: &Pose2<f64>, guess: &Pose2<f64>, found: &ScanAlignment) {
@@ -37,9 +40,12 @@ impl OdometryScale {
         let scale = found.information.trace();
         let (information, vector) = (found.information / scale, found.information_vector / scale);
         let right = vector + information * at_guess;
-        let Some(motion) =
-            found.information.try_inverse().map(|inverse| at_guess + inverse * found.information_vector)
-        else {
+        let eigenvalues = found.information.symmetric_eigenvalues();
+        let inverse = found
+            .information
+            .try_inverse()
+            .filter(|_| eigenvalues.min() > LEAST_CONDITION * eigenvalues.max());
+        let Some(motion) = inverse.map(|inverse| at_guess + inverse * found.information_vector) else {
             return;
         };
         self.information += design.transpose() * information * design;

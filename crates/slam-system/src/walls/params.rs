@@ -224,6 +224,11 @@ impl WallSlamParams {
             }
             .into());
         }
+        let mut headings = self.laser_pose.iter().chain(&self.start_pose).map(|[.., heading]| *heading);
+        if let Some(value) = headings.find(|heading| heading.abs() > std::f64::consts::TAU) {
+            let (name, range) = ("heading of laser_pose or start_pose", "from -2π to 2π rad");
+            return Err(SlamError::Parameter { name, value, range }.into());
+        }
         Ok(self)
     }
 }
