@@ -291,7 +291,6 @@ where
         let alternative_probability = self.relocalization.probability();
         let estimate = self.present.estimate()?;
         let share = estimate.share * (1.0 - alternative_probability);
-        let per_tile = 1.0 / weighing.n_tiles as f64;
         let is_narrow = estimate.position_sigma() < PLACE_RADIUS && estimate.heading_sigma() < PLACE_RADIUS;
         let params = &self.params.search;
         // At even odds, the frames support the map at the estimate, one of all places, as much as the background.
@@ -316,8 +315,6 @@ where
             effective_particles: weighing.effective_particles,
             n_particles: self.present.n_particles(),
             n_hypotheses: 1 + self.relocalization.alternatives().len(),
-            log_evidence_per_pixel: weighing.log_evidence * per_tile,
-            fit: weighing.mean_log_likelihood * per_tile,
             alternative_probability,
             light_probabilities: weighing.light_probabilities[..self.prior.sun.n_lights()].to_vec(),
         })

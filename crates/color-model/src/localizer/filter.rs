@@ -52,8 +52,6 @@ pub(crate) struct Weighing {
     /// Exponent of the likelihoods, at most 1.
     pub(crate) tempering: f64,
     pub(crate) effective_particles: f64,
-    /// Number of tiles of the frame.
-    pub(crate) n_tiles: usize,
     /// Probability of each light.
     pub(crate) light_probabilities: Vec<f64>,
 }
@@ -77,7 +75,6 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             mean_log_likelihood: 0.0,
             tempering: 1.0,
             effective_particles: particles.len() as f64,
-            n_tiles: 1,
             light_probabilities: (0..light.n_lights()).map(|at| light.light_probability(at)).collect(),
         };
         Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
@@ -157,7 +154,6 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             mean_log_likelihood,
             tempering,
             effective_particles: weights.effective_sample_size(),
-            n_tiles: frame.n_tiles(),
             light_probabilities,
         };
         self.weights = weights;

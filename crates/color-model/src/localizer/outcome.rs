@@ -13,11 +13,6 @@ pub struct FrameOutcome {
     pub tempering: f64,
     /// Number of particles at the estimate.
     pub n_particles: usize,
-    /// Log of the mean likelihood ratio to the background, nats a pixel, before tempering.
-    pub log_evidence_per_pixel: f64,
-    /// Log-likelihood of the image at the estimate relative to its average colours, nats a pixel: 0.2 to 0.5 where the image shows much of the map, 0 or less where
-    /// the background explains it better.
-    pub fit: f64,
     /// Probability that the robot is at one of the alternative places.
     pub alternative_probability: f64,
     /// Number of places that are tracked: the estimate and its alternatives.
@@ -29,7 +24,8 @@ pub struct FrameOutcome {
 /// Quality of a pose estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalizationStatus {
-    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place. A second search found it again and was certain of it.
+    /// One place has at least 95 % of the probability, and the cluster of its particles is narrower than a place. A second search, if searches are on, found it again and
+    /// was certain of it.
     Tracking,
     /// Several places, one that is wider, or one of which no search was certain.
     Ambiguous,

@@ -167,7 +167,7 @@ fn robot_that_sees_nothing_of_the_map_is_not_tracking() {
         assert!(outcomes.iter().all(|outcome| sigma(outcome).is_finite()), "{name}");
         let n_sure =
             outcomes[20..].iter().filter(|outcome| outcome.status == LocalizationStatus::Tracking).count();
-        assert_eq!(n_sure, 0, "{name}: {:?}", outcomes.last().map(|outcome| outcome.fit));
+        assert_eq!(n_sure, 0, "{name}: {:?}", outcomes.last().map(|outcome| outcome.status));
     }
 }
 

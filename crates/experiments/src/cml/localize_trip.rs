@@ -22,7 +22,7 @@ pub(crate) struct SimulatedDriveResult {
     pub n_references: Vec<usize>,
     /// Computing time of prediction and update, seconds.
     pub step_s: Vec<f64>,
-    /// Number of track losses followed by a relocalization at another pose.
+    /// Number of times that the belief lost its one dominant mode.
     pub n_lost: usize,
     /// Number of relocations of the estimate.
     pub n_relocated: usize,

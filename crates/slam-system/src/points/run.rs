@@ -87,7 +87,7 @@ pub fn run_streamed<R: Borrow<Record>>(
 /// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `overview` and `records` are as in
 /// [`run_streamed`].
 ///
-/// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
+/// The start pose is that of the map. Figures and events are those of this log alone.
 ///
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later detection can be used, or a parameter is out of range.

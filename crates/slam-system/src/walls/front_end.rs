@@ -23,7 +23,7 @@ use super::{
     repeated_scan::RepeatedScanCheck,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
-use crate::slam::{AssociationRule, FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis};
+use crate::slam::{FrontEnd, MotionEstimate, SlamEstimator, SlamSystem, nis};
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
 pub type WallModel = SensorWithHeadingDrift<MountedSensor<WallSensor>>;
@@ -39,7 +39,7 @@ pub struct WallSlamFrontEnd {
     pub(super) matcher: Option<ScanMatcher>,
     /// The last keyframe, which later scans are matched to.
     pub(super) last_keyframe: Option<KeyframeScan>,
-    /// The way since.
+    /// The motion since.
     pub(super) relative_motion: RelativeMotion,
     pub(super) odometry: OdometryBetweenScans,
     /// The present pose of the laser, if the log gives it and the parameters do not.
@@ -75,11 +75,7 @@ impl WallSystem {
         moves_by_velocity: bool,
     ) -> anyhow::Result<Self> {
         let params = params.validated()?;
-        let rule = match params.association {
-            AssociationRule::Known => AssociationRule::Nn, // walls have no identities
-            rule => rule,
-        };
-        let association = rule.with(params.nearest_neighbour, params.joint_compatibility)?;
+        let association = params.association.with(params.nearest_neighbour, params.joint_compatibility)?;
         let sensor = SensorWithHeadingDrift(MountedSensor { sensor: params.sensor, mount: params.mount() });
         let state = PoseWithHeadingDrift { pose: start, heading_drift: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();

@@ -6,10 +6,10 @@ use wayfix_slam_ekf::{OdometryMotion, PoseWithHeadingDrift};
 
 use super::OdometryNoisePerScan;
 
-/// The motion since the last scan by odometry, with its covariance.
+/// The motion since the last keyframe by odometry, with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RelativeMotion {
-    /// The motion, in the frame of the last scan's robot, with the drift that is estimated taken out.
+    /// The motion, in the frame of the robot at the keyframe, with the drift that is estimated taken out.
     pub motion: Pose2<f64>,
     /// Covariance in the frame at its end, but for the drift.
     pub covariance: Matrix3<f64>,
@@ -22,7 +22,7 @@ pub struct RelativeMotion {
 }
 
 impl Default for RelativeMotion {
-    /// No way at all.
+    /// No motion.
     fn default() -> Self {
         Self {
             motion: Pose2::identity(),
@@ -34,7 +34,7 @@ impl Default for RelativeMotion {
     }
 }
 
-/// A motion of zero is known this well at least, m and rad: a laser has to be able to object.
+/// A motion of zero is known this well at least, m and rad: scans may contradict odometry that stands.
 const SMALLEST_SIGMA: f64 = 1e-3;
 
 impl RelativeMotion {
@@ -62,7 +62,7 @@ impl RelativeMotion {
         Self { pose_at_last_scan: self.motion, last_step, ..self }
     }
 
-    /// A new way, from where this one ends.
+    /// A new motion, from where this one ends.
     pub(super) fn reset_at_keyframe(&self) -> Self {
         Self { last_step: self.last_step, ..Self::default() }
     }
@@ -81,8 +81,8 @@ impl RelativeMotion {
     }
 
     /// Whether the robot is still about where it was.
-    pub(super) fn is_within(&self, way: f64, turn: f64) -> bool {
-        self.motion.translation.norm() < way && self.motion.heading().abs() < turn
+    pub(super) fn is_within(&self, distance: f64, turn: f64) -> bool {
+        self.motion.translation.norm() < distance && self.motion.heading().abs() < turn
     }
 
     /// Whether every number is one.

@@ -1,5 +1,6 @@
 //! Tests of the public interface of `wayfix-slam-system`, in one program: it is linked once.
 
+mod contradictions;
 mod external_sensors;
 mod odometry_faults;
 mod overview;

@@ -76,6 +76,7 @@ fn skewed_drive(share: f64, beam_period: f64) -> Vec<Record> {
 }
 
 const N_STEPS: usize = 300;
+const CONTRADICT: &str = "scans_contradict_odometry";
 
 /// A drive whose odometry is `increments`, each with the step that it ends at, and `delay` seconds late.
 fn drive(increments: &[(usize, Pose2<f64>)], delay: f64) -> Vec<Record> {
@@ -128,7 +129,8 @@ fn assert_right(increments: &[(usize, Pose2<f64>)]) -> WallRun {
 #[test]
 fn sound_odometry_says_nothing() {
     let mut run = assert_right(&every_step());
-    assert_eq!(run.events().get("record_refused") + run.events().get("odometry_lags"), 0);
+    let said = ["record_refused", "odometry_lags", CONTRADICT];
+    assert_eq!(said.map(|name| run.events().get(name)), [0, 0, 0]);
 }
 
 #[test]
@@ -220,4 +222,51 @@ fn impossible_time_increment_is_said_and_not_used() {
     assert!(error < CENTIMETRES && nees < CONSISTENT, "{error} m, NEES {nees}");
     assert_eq!(run.events().get("scan_deskewed"), 0);
     assert!(run.events().get("scan_duration_implausible") > 290);
+}
+
+/// The drive with scans changed by `change`, which gets their number.
+fn changed_scans(change: impl Fn(usize, &mut Vec<f64>)) -> Vec<Record> {
+    let mut records = drive(&every_step(), 0.0);
+    let scans = records.iter_mut().filter_map(|record| match &mut record.data {
+        RecordData::Scan(scan) => Some(&mut scan.ranges),
+        _ => None,
+    });
+    scans.enumerate().for_each(|(step, ranges)| change(step, ranges));
+    records
+}
+
+#[test]
+fn scans_that_contradict_odometry_are_said() {
+    let feet = |_, ranges: &mut Vec<f64>| ranges.iter_mut().for_each(|range| *range *= 0.3048);
+    let mirrored = |_, ranges: &mut Vec<f64>| ranges[1..].reverse();
+    let sideways = |_, ranges: &mut Vec<f64>| ranges.rotate_left(90);
+    // The robot hides the laser's view of three quarters of the room.
+    let itself = |_, ranges: &mut Vec<f64>| ranges[..270].fill(0.3);
+    let changed =
+        [changed_scans(feet), changed_scans(mirrored), changed_scans(sideways), changed_scans(itself)];
+    for (at, records) in changed.iter().enumerate() {
+        assert_eq!(run(records, &WallSlamParams::default()).events().get(CONTRADICT), 1, "change {at}");
+    }
+}
+
+#[test]
+fn laser_that_hangs_leaves_the_pose_to_odometry() {
+    let RecordData::Scan(stuck) = scan(&pose(100)) else { unreachable!() };
+    let records = changed_scans(|step, ranges| {
+        if (100..150).contains(&step) {
+            ranges.clone_from(&stuck.ranges);
+        }
+    });
+    let mut run = run(&records, &WallSlamParams::default());
+    let (error, nees) = error_and_nees(&run);
+    assert_eq!(run.events().get("record_refused"), 49);
+    // Wheels err by 1 % on these 3 m, and scans find the map again.
+    assert!(error < 2.0 * CENTIMETRES && nees < CONSISTENT, "{error} m, NEES {nees}");
+}
+
+#[test]
+fn laser_far_from_the_robot_is_said() {
+    let mut records = drive(&every_step(), 0.0);
+    records.insert(0, at(9.9, RecordData::LaserMount(Pose2::new(200.0, 0.0, 0.0))));
+    assert!(run(&records, &WallSlamParams::default()).events().get("laser_mount_implausible") > 0);
 }

@@ -103,13 +103,11 @@ impl CmlRunPlan {
 
     /// Columns and rows of the panorama of the first usable view.
     pub fn first_size(&self, reader: &mut ViewDescriptorReader) -> Option<(usize, usize)> {
-        let images = self.records.iter().filter_map(|record| match &record.data {
+        let mut images = self.records.iter().filter_map(|record| match &record.data {
             RecordData::Image(image) => Some(image),
             _ => None,
         });
-        let mut described = images.filter_map(|image| reader.describe(image).ok());
-        described.next()?;
-        drop(described);
+        images.find(|image| reader.describe(image).is_ok())?;
         reader.size()
     }
 

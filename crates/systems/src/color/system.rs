@@ -77,10 +77,6 @@ pub struct ColorFrameResult {
     pub effective_particles: f64,
     /// Number of particles.
     pub n_particles: usize,
-    /// Log likelihood of the image at the estimate relative to its average colours, nats per pixel.
-    pub fit: f64,
-    /// Log of the mean likelihood ratio to the background, nats per pixel.
-    pub log_evidence_per_pixel: f64,
     /// Probability of each light of the bank.
     pub light_probabilities: Vec<f64>,
     /// Classification counts, if the log has true labels.
@@ -248,8 +244,6 @@ impl ColorSystem {
             odometry: self.dead_reckoning,
             effective_particles: outcome.effective_particles,
             n_particles: outcome.n_particles,
-            fit: outcome.fit,
-            log_evidence_per_pixel: outcome.log_evidence_per_pixel,
             light_probabilities: outcome.light_probabilities,
             labelled,
             step,

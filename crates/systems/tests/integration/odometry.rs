@@ -1,4 +1,4 @@
-//! Increments, velocities, both, and none, in the localizers of images.
+//! Increments, velocities, both, none and contradictory ones, in the localizers of images.
 
 use std::sync::Arc;
 
@@ -141,4 +141,33 @@ fn log_without_odometry_says_so() {
     assert_eq!((cml(without_increments(&store)).event)("no_odometry"), 1);
     assert_eq!((color(&without_increments(&field)).event)("no_odometry"), 1);
     assert_eq!((color(&field).event)("no_odometry"), 0);
+}
+
+#[test]
+fn camera_that_hangs_does_not_hold_the_robot() {
+    let mut field = log("color_bright.mcap", 6.0);
+    let sound = color(&field);
+    let images = field.iter_mut().filter_map(|record| match &mut record.data {
+        RecordData::Image(image) => Some(image),
+        _ => None,
+    });
+    let mut hanging = None;
+    for image in images.skip(30).take(20) {
+        *image = hanging.get_or_insert_with(|| image.clone()).clone();
+    }
+    let hung = color(&field);
+    assert!((hung.event)("record_refused") >= 15);
+    let apart = sound.last().mean().local(hung.last().mean());
+    assert!(apart.xy().norm() < 0.1 && apart.z.abs() < 0.1, "{apart}");
+}
+
+#[test]
+fn robot_that_by_odometry_never_moves_learns_nothing_and_says_so() {
+    let mut store = log("store_area.mcap", 20.0);
+    for record in &mut store {
+        if let RecordData::OdometryIncrement(increment) = &mut record.data {
+            *increment = Pose2::identity();
+        }
+    }
+    assert_eq!((cml(store).event)("map_is_empty"), 1);
 }

@@ -233,7 +233,7 @@ fn output_that_cannot_be_written_is_told() {
     let scratch = Scratch::new();
     let log = scratch.file("walk.txt", walk(20));
     let in_the_way = scratch.file("taken", "a file where a folder belongs");
-    refused(&run_slam(&log, &["--out", in_the_way.to_str().expect("a plain path")]), "cannot create");
+    refused(&run_slam(&log, &["--out", in_the_way.to_str().expect("a plain path")]), "needs a folder");
     let below = in_the_way.join("walk.mcap");
     refused(&wayfix([Path::new("convert"), &log, &below]), "cannot be written");
     refused(&wayfix([Path::new("convert"), &log, &scratch.path("walk.xyz")]), "--to mcap");

@@ -40,7 +40,7 @@ fn check_blind(what: &str, frames: &[Judged]) {
 fn walk(
     venue: &LeagueVenue,
     [light, other]: [&(impl LightField + Clone + 'static); 2],
-    spoil: impl Fn(&mut LeaguePicture),
+    spoil: impl Fn(usize, &mut LeaguePicture),
 ) -> Vec<Record> {
     drive(
         venue,
@@ -49,7 +49,7 @@ fn walk(
         |frame| Box::new(if DISTURBED.contains(&frame) { other.clone() } else { light.clone() }),
         |frame, picture| {
             if DISTURBED.contains(&frame) {
-                spoil(picture);
+                spoil(frame, picture);
             }
         },
     )
@@ -72,7 +72,7 @@ fn cloud(hall: u64) -> Vec<Judged> {
     let mut cloudy = venue.sunny.clone();
     cloudy.beam *= 0.0;
     cloudy.hall.bounce = venue.bright.bounce;
-    localize(&walk(&venue, [&venue.sunny, &cloudy], |_| {}))
+    localize(&walk(&venue, [&venue.sunny, &cloudy], |_, _| {}))
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn cloud_after_which_the_pose_stays_doubtful() {
 #[test]
 fn light_switched_off_in_mid_drive() {
     let (venue, dark) = (hall(2), LampLight::default());
-    check_blind("light off", &localize(&walk(&venue, [&venue.bright, &dark], |_| {})));
+    check_blind("light off", &localize(&walk(&venue, [&venue.bright, &dark], |_, _| {})));
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn ball_that_fills_the_image() {
 fn camera_that_stops_and_returns() {
     // Of two cameras a log's reader takes the one with the most images: if that one stops, there are none.
     let venue = hall(6);
-    let mut records = walk(&venue, [&venue.bright; 2], |_| {});
+    let mut records = walk(&venue, [&venue.bright; 2], |_, _| {});
     let mut n_images = 0;
     records.retain(|record| {
         let is_image = matches!(record.data, RecordData::Image(_));
@@ -119,7 +119,7 @@ fn camera_that_stops_and_returns() {
 }
 
 /// Veiling glare that falls off from a corner, and ghosts of the aperture on a line through the middle.
-fn flare(picture: &mut LeaguePicture) {
+fn flare(_: usize, picture: &mut LeaguePicture) {
     let (width, height) = (f64::from(picture.width), f64::from(picture.height));
     let source = (0.2 * width, 0.1 * height);
     let ghosts =
@@ -145,11 +145,11 @@ fn flare(picture: &mut LeaguePicture) {
     }
 }
 
-/// Orange, lit from above.
-fn ball(picture: &mut LeaguePicture) {
+/// Orange, lit from above, with other noise in every frame.
+fn ball(frame: usize, picture: &mut LeaguePicture) {
     for (pixel, rgb) in picture.rgb.chunks_exact_mut(3).enumerate() {
         let down = f64::from(pixel as u32 / picture.width) / f64::from(picture.height);
-        let grain = (pixel * 7919 % 13) as f64;
+        let grain = ((pixel * 7919 + frame * 104_729) % 13) as f64;
         for (value, paint) in rgb.iter_mut().zip([220.0, 110.0, 40.0]) {
             *value = (paint * (1.0 - 0.5 * down) + grain) as u8;
         }
