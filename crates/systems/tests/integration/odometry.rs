@@ -162,7 +162,7 @@ fn camera_that_hangs_does_not_hold_the_robot() {
 }
 
 #[test]
-fn robot_that_by_odometry_never_moves_learns_nothing_and_says_so() {
+fn robot_without_motion_learns_nothing_and_says_so() {
     let mut store = log("store_area.mcap", 20.0);
     for record in &mut store {
         if let RecordData::OdometryIncrement(increment) = &mut record.data {
