@@ -96,10 +96,6 @@ impl<H> RelocalizationTest<H> {
         let statistics = self.alternatives.iter().map(AlternativeHypothesis::statistic);
         self.params.probability(statistics.fold(0.0, |sum, one| sum + one))
     }
-    /// Removes all alternatives.
-    pub fn clear(&mut self) {
-        self.alternatives.clear();
-    }
 
     /// Adds driven distance, in m.
     ///

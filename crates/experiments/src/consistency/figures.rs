@@ -93,11 +93,11 @@ impl ConsistencyMonteCarlo {
         ];
         for course in &self.courses {
             let name = |figure: &str| format!("{}_{figure}", course.kind.name());
-            metrics.push(Metric::new(name("nees_mean"), course.mean(|look| look.nees), ""));
+            metrics.push(Metric::new(name("nees_mean"), course.mean(|sample| sample.nees), ""));
             metrics.push(Metric::new(name("nees_outside_band_share"), course.share_outside(&self.band), ""));
             let n_outside = course.share_outside(&self.whole_run_band) * course.samples.len() as f64;
             metrics.push(Metric::new(name("n_samples_nees_outside_whole_run_band"), n_outside.round(), ""));
-            let rmse = course.mean(|look| look.position_error.powi(2)).sqrt();
+            let rmse = course.mean(|sample| sample.position_error.powi(2)).sqrt();
             metrics.push(Metric::new(name("position_rmse_m"), rmse, "m"));
         }
         metrics
@@ -106,7 +106,7 @@ impl ConsistencyMonteCarlo {
     /// The heading σ is largest just before the first loop closure; this is the average that the filter states there.
     fn heading_sigma_at_closure(&self) -> f64 {
         let invariant = self.courses.iter().filter(|course| course.kind == ComparedFilter::Invariant);
-        invariant.flat_map(|course| &course.samples).map(|look| look.heading_sigma).fold(0.0, f64::max)
+        invariant.flat_map(|course| &course.samples).map(|sample| sample.heading_sigma).fold(0.0, f64::max)
     }
 }
 
@@ -117,7 +117,7 @@ impl FilterMonteCarloResults {
 
     /// Share of the samples at which the average NEES is outside a band.
     pub fn share_outside(&self, band: &ChiSquaredBand) -> f64 {
-        self.mean(|look| f64::from(u8::from(!band.contains(look.nees))))
+        self.mean(|sample| f64::from(u8::from(!band.contains(sample.nees))))
     }
 }
 
@@ -129,10 +129,10 @@ fn average(runs: &[Vec<ConsistencySample>]) -> Vec<ConsistencySample> {
             runs.iter().map(|samples| value(&samples[k])).sum::<f64>() / runs.len() as f64
         };
         ConsistencySample {
-            seconds: mean(|look| look.seconds),
-            nees: mean(|look| look.nees),
-            position_error: mean(|look| look.position_error.powi(2)).sqrt(),
-            heading_sigma: mean(|look| look.heading_sigma),
+            seconds: mean(|sample| sample.seconds),
+            nees: mean(|sample| sample.nees),
+            position_error: mean(|sample| sample.position_error.powi(2)).sqrt(),
+            heading_sigma: mean(|sample| sample.heading_sigma),
         }
     };
     (0..n_samples).map(at).collect()
@@ -144,19 +144,19 @@ mod tests {
 
     #[test]
     fn averages_are_per_scan_and_end_with_the_shortest_run() {
-        let look = |nees, position_error| ConsistencySample {
+        let sample = |nees, position_error| ConsistencySample {
             seconds: 1.0,
             nees,
             position_error,
             heading_sigma: 0.1,
         };
-        let runs = [vec![look(1.0, 3.0), look(5.0, 1.0)], vec![look(3.0, 4.0)]];
+        let runs = [vec![sample(1.0, 3.0), sample(5.0, 1.0)], vec![sample(3.0, 4.0)]];
         let averages = average(&runs);
         assert_eq!(averages.len(), 1);
         assert_eq!((averages[0].nees, averages[0].position_error), (2.0, 12.5_f64.sqrt()));
         let course = FilterMonteCarloResults {
             kind: ComparedFilter::Standard,
-            samples: vec![look(1.0, 0.0), look(f64::NAN, 0.0)],
+            samples: vec![sample(1.0, 0.0), sample(f64::NAN, 0.0)],
         };
         assert_eq!(course.share_outside(&ChiSquaredBand { low: 0.0, high: 2.0 }), 0.5);
     }

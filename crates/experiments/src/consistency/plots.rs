@@ -6,7 +6,7 @@ use wayfix_evaluation::plot::{AxisScale, LinePlot, PlotBand, PlotError, PlotSeri
 /// Returns an error if the picture cannot be drawn.
 pub(crate) fn picture(runs: &ConsistencyMonteCarlo) -> Result<SvgPlot, PlotError> {
     let series = runs.courses.iter().map(|course| {
-        let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();
+        let points = course.samples.iter().map(|sample| (sample.seconds, sample.nees)).collect();
         PlotSeries::new(course.kind.name().replace('_', " "), points)
     });
     let (low, high) = (runs.band.low, runs.band.high);

@@ -23,7 +23,7 @@ pub(crate) struct MonobotStep {
     pub landmark_sigma: f64,
     /// Mean error over all landmarks: estimate minus truth.
     pub mean_landmark_error: f64,
-    /// Kalman gains of the measurement of the first landmark, for robot and landmark.
+    /// Kalman gains of the measurement of the first landmark, for robot and landmark; NaN before it is in the map, which plots leave out.
     pub gains: [f64; 2],
 }
 
@@ -92,7 +92,7 @@ fn observations(run: &MonobotRun, k: usize, reference: WorldReference) -> Vec<Ob
     all.map(|(id, distance)| Observation { label: Some(id), measurement: Vector1::new(distance) }).collect()
 }
 
-/// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a measurement of the first landmark alone; `None` before it is in the map.
+/// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a measurement of the first landmark alone; NaN before it is in the map.
 fn gains(slam: &EkfSlam<LineDistanceSensor>, distance: Option<f64>) -> [f64; 2] {
     use wayfix_slam_ekf::LandmarkModel;
     let (Some(distance), true) = (distance, slam.contains(LandmarkId(0))) else { return [f64::NAN; 2] };

@@ -20,28 +20,28 @@ impl LinearizedUpdate {
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
         let (robot_size, size, rows) = (RobotDim::<M>::DIM, LandmarkDim::<M>::DIM, MeasurementDim::<M>::DIM);
-        let sightings: Vec<_> = seen.iter().filter_map(|id| Linearized::of(slam, *id)).collect();
-        let landmarks: Vec<LandmarkId> = sightings
+        let detections: Vec<_> = seen.iter().filter_map(|id| Linearized::of(slam, *id)).collect();
+        let landmarks: Vec<LandmarkId> = detections
             .iter()
-            .filter(|sighting| sighting.offset.is_some())
-            .map(|sighting| sighting.id)
+            .filter(|detection| detection.offset.is_some())
+            .map(|detection| detection.id)
             .collect();
 
         let n = robot_size + size * landmarks.len();
         let (mut jacobian, mut noise) = (
-            DMatrix::zeros(rows * sightings.len(), n),
-            DMatrix::zeros(rows * sightings.len(), rows * sightings.len()),
+            DMatrix::zeros(rows * detections.len(), n),
+            DMatrix::zeros(rows * detections.len(), rows * detections.len()),
         );
         let mut motion = DMatrix::zeros(n, slam.model().symmetries().len());
         motion.rows_mut(0, robot_size).copy_from(&slam.model().robot_symmetry(slam.robot()));
         let mut places: Vec<usize> = (0..robot_size).collect(); // in the filter's covariance
-        for (k, sighting) in sightings.iter().enumerate() {
-            jacobian.view_mut((k * rows, 0), (rows, robot_size)).copy_from(&sighting.robot);
-            noise.view_mut((k * rows, k * rows), (rows, rows)).copy_from(&sighting.noise);
-            if let Some(offset) = sighting.offset {
+        for (k, detection) in detections.iter().enumerate() {
+            jacobian.view_mut((k * rows, 0), (rows, robot_size)).copy_from(&detection.robot);
+            noise.view_mut((k * rows, k * rows), (rows, rows)).copy_from(&detection.noise);
+            if let Some(offset) = detection.offset {
                 let column = places.len();
-                jacobian.view_mut((k * rows, column), (rows, size)).copy_from(&sighting.landmark);
-                motion.rows_mut(column, size).copy_from(&sighting.motion);
+                jacobian.view_mut((k * rows, column), (rows, size)).copy_from(&detection.landmark);
+                motion.rows_mut(column, size).copy_from(&detection.motion);
                 places.extend(offset..offset + size);
             }
         }

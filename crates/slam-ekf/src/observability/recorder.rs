@@ -88,8 +88,8 @@ impl ObservabilityRecorder {
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
-        let look = LinearizedUpdate::of(slam, seen);
-        look.jacobian.nrows() > 0 && self.add(&look, LandmarkDim::<M>::DIM)
+        let update = LinearizedUpdate::of(slam, seen);
+        update.jacobian.nrows() > 0 && self.add(&update, LandmarkDim::<M>::DIM)
     }
 
     /// Records a measurement of the robot alone, with its Jacobian and innovation covariance, as of [`EkfSlam::update_robot`].
@@ -107,9 +107,9 @@ impl ObservabilityRecorder {
         let fits = jacobian.ncols() == RobotDim::<M>::DIM
             && covariance.shape() == (jacobian.nrows(), jacobian.nrows());
         let motion = slam.model().robot_symmetry(slam.robot());
-        let look =
+        let update =
             LinearizedUpdate { jacobian, landmarks: Vec::new(), innovation_covariance: covariance, motion };
-        fits && self.add(&look, LandmarkDim::<M>::DIM)
+        fits && self.add(&update, LandmarkDim::<M>::DIM)
     }
 
     /// $`J`$: the robot at its start, then the landmarks in the order in which they were first recorded.
@@ -137,15 +137,15 @@ impl ObservabilityRecorder {
         readable(basis).into_iter().map(named).collect()
     }
 
-    fn add(&mut self, look: &LinearizedUpdate, landmark_size: usize) -> bool {
-        let Some(factor) = Cholesky::new(look.innovation_covariance.clone()) else { return false };
+    fn add(&mut self, update: &LinearizedUpdate, landmark_size: usize) -> bool {
+        let Some(factor) = Cholesky::new(update.innovation_covariance.clone()) else { return false };
         let robot_size = self.transition.nrows();
         let weighed = |matrix: &DMatrix<f64>| factor.l().solve_lower_triangular(matrix);
-        let mut rows = look.jacobian.clone();
+        let mut rows = update.jacobian.clone();
         let by_start = rows.columns(0, robot_size) * &self.transition;
         rows.columns_mut(0, robot_size).copy_from(&by_start);
-        let by_robot = look.jacobian.columns(0, robot_size) * look.motion.rows(0, robot_size);
-        let noticed = &look.jacobian * &look.motion;
+        let by_robot = update.jacobian.columns(0, robot_size) * update.motion.rows(0, robot_size);
+        let noticed = &update.jacobian * &update.motion;
         let by_landmarks = &noticed - &by_robot;
         let (Some(rows), Some(noticed), Some(by_robot), Some(by_landmarks)) =
             (weighed(&rows), weighed(&noticed), weighed(&by_robot), weighed(&by_landmarks))
@@ -158,7 +158,7 @@ impl ObservabilityRecorder {
         if !own.iter().all(|entry| entry.is_finite()) {
             return false;
         }
-        let places = self.places(&look.landmarks, landmark_size);
+        let places = self.places(&update.landmarks, landmark_size);
         for (column, &to_column) in places.iter().enumerate() {
             for (row, &to_row) in places.iter().enumerate() {
                 self.information[(to_row, to_column)] += own[(row, column)];

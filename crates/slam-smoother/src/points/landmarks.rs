@@ -3,10 +3,8 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Vector2};
 use wayfix_smoother::VariableId;
 
-use super::{
-    MountedRangeBearing, PointSmoother, measurements::ROBUST, residuals::SamePoint, smoother::ONLINE,
-};
-use crate::SlamSmootherError;
+use super::{MountedRangeBearing, PointSmoother, residuals::SamePoint, smoother::ONLINE};
+use crate::{ROBUST, SlamSmootherError};
 
 /// Two landmarks that are one are together to within this, m.
 const SAME: f64 = 1e-3;

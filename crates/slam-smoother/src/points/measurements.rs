@@ -1,11 +1,11 @@
 use nalgebra::{Matrix2, Vector2};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Kernel, Prior};
+use wayfix_smoother::Prior;
 
 use super::{
     AntennaPosition, Heading, MountedRangeBearing, PointSmoother, PoseObservation, smoother::inverse,
 };
-use crate::SlamSmootherError;
+use crate::{ROBUST, SlamSmootherError};
 
 /// A detection of a point whose landmark is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,9 +17,6 @@ pub struct Detection {
     /// Covariance of range and bearing.
     pub covariance: Matrix2<f64>,
 }
-
-/// 95 % of the efficiency of least squares when there are no outliers.
-pub(super) const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
 
 impl PointSmoother {
     /// Adds a detection from the newest pose. An unknown landmark starts where it is seen.

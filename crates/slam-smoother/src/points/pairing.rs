@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Vector1, Vector2};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_smoother::{Residual, ResidualId, VariableId};
 
-use super::{MountedRangeBearing, PointSmoother, measurements::ROBUST};
-use crate::SlamSmootherError;
+use super::{MountedRangeBearing, PointSmoother};
+use crate::{ROBUST, SlamSmootherError};
 
 /// A landmark at its present place.
 struct Landmark {

@@ -2,16 +2,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::Pose2;
-use wayfix_smoother::{Between, Graph, Kernel, Params, ResidualId, Summary, VariableId};
+use wayfix_smoother::{Between, Graph, Params, ResidualId, Summary, VariableId};
 
 use super::{
     BeaconRange, Calibration, CalibrationPrior, RangeOnlyInput, RangeOnlyNoise, residuals::VectorPrior,
 };
-use crate::SlamSmootherError;
-
-/// Ranges with outliers: 95 % of the efficiency of least squares when there are none. [Holland and Welsch 1977]
-/// Its cost is that of Student's t with $`c^2 - 1`$ degrees of freedom, so that the noise has a likelihood. [Lange et al. 1989]
-pub(super) const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
+use crate::{ROBUST, SlamSmootherError};
 
 /// Relative decrease of the cost that ends an optimization for the likelihood: some thousand measurements cost about as much each as one.
 const LIKELIHOOD_DECREASE: f64 = 1e-5;

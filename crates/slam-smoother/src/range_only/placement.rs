@@ -3,9 +3,9 @@ use wayfix_smoother::{Graph, Params};
 
 use super::{
     Calibration,
-    batch::ROBUST,
     residuals::{RangeFrom, VectorPrior},
 };
+use crate::ROBUST;
 
 /// Starts around the nearest pose: directions of the beacon.
 const N_STARTS: usize = 16;

@@ -11,6 +11,7 @@ use wayfix_system_core::{EventCounts, HeadingSignTest, System, map_measurement};
 
 use super::{
     AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
+    carried,
 };
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -141,9 +142,7 @@ where
             self.estimator.events.count("record_before_start");
             return Ok(());
         };
-        let carry = rest.inverse().adjoint();
-        let covariance = carry * covariance * carry.transpose();
-        let motion = motion.compose(rest);
+        let (motion, covariance) = (motion.compose(rest), carried(&covariance, rest));
         self.estimator.update_moved(measurement, motion, covariance, &mut self.heading_sign)
     }
 

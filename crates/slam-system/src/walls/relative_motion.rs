@@ -157,7 +157,7 @@ mod tests {
 
     use super::*;
 
-    /// Drift and way, corrected one after the other as the system does, are what conditioning their joint Gaussian at once gives.
+    /// Drift and motion, corrected one after the other as the system does, are what conditioning their joint Gaussian at once gives.
     #[test]
     fn a_match_corrects_drift_and_way_as_one_gaussian() {
         let noise = OdometryMotion { heading_variance_per_meter: 0.01, ..OdometryMotion::default() };
