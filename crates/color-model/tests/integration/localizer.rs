@@ -1,9 +1,12 @@
 //! The colour localizer on painted pictures: it finds the robot, refuses what it cannot use, says so when it sees nothing, and repeats itself.
 
+use std::sync::Arc;
+
 use crate::support::painted::{Scene, bank, camera_pose, mount};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape};
 use wayfix_color_model::{
     ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, GlobalSearchParams,
     ImageLikelihoodChoice, LocalizationStatus, LocalizerParams, OdometryStep, StartPosePrior, YuvImage,
@@ -116,6 +119,34 @@ fn blobs_instead_of_pixels_correct_a_rough_start() {
     let poses: Vec<_> = localizer.poses().collect();
     let mean = poses.iter().map(|(pose, weight)| truth.local(pose) * *weight).sum::<Vector3<f64>>();
     assert!(mean.xy().norm() < 0.14 && mean.z.abs() < 0.1, "{mean:?}");
+}
+
+#[test]
+fn published_form_takes_the_first_frame_too() {
+    let mut scene = Scene::new();
+    let body = Pose2::new(0.5, 0.2, 0.4);
+    let (views, _) = drive(&mut scene, body, 1, 4);
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let mut localizer = localizer_with(LocalizerParams::as_published(), &scene, &near(body), &mut rng);
+    let (image, mount) = &views[0];
+    assert!(localizer.update(image, mount, &mut rng).is_ok());
+}
+
+#[test]
+fn map_in_centimetres_is_refused() {
+    let scene = Scene::new();
+    let color = ColorId(0);
+    let corners = [(-210.0, -150.0), (210.0, -150.0), (210.0, 150.0), (-210.0, 150.0)];
+    let vertices = corners.map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
+    let names = scene.map.colors().to_vec();
+    let map = ColorMap::new(names, vec![ColoredShape::Polygon { color, vertices }]).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let start = near(Pose2::new(0.0, 0.0, 0.0));
+    let mut create = |params| {
+        ColorLocalizer::new(Arc::new(map.clone()), scene.camera, bank(), &start, params, &mut rng).map(|_| ())
+    };
+    assert!(matches!(create(LocalizerParams::default()), Err(ColorModelError::MapTooLarge { .. })));
+    assert_eq!(create(LocalizerParams::as_published()), Ok(()), "it does not search");
 }
 
 #[test]

@@ -14,3 +14,4 @@ mod oracle;
 mod retirement;
 mod snapshot;
 mod walls;
+mod wrapped_sensors;

@@ -281,6 +281,9 @@ impl WallSlamFrontEnd {
             self.add_stamped_estimate(stamp, (0.0, 0), estimator);
             return Err(reason);
         }
+        if scan.echoes().next().is_none() {
+            estimator.events.count("scan_without_echo");
+        }
         let scan = self.placed(scan, laser, &mut estimator.events);
         let cloud = scan.cloud().map_err(|error| error.to_string())?;
         let matched = self.match_to_keyframe(&cloud, estimator);

@@ -6,7 +6,7 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 use wayfix_system_core::{
-    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_reference, warn_of_start,
+    EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_reference, warn_of_start,
     without_odometry_delay,
 };
 
@@ -97,6 +97,17 @@ pub fn run_on<R: Borrow<Record>>(
     drive_through(system, track, truth::true_walls(overview), records, observe)
 }
 
+/// Says when no scan was matched and some had no echo at all.
+fn warn_of_blind_laser(events: &mut EventCounts) {
+    let n = events.get("scan_without_echo");
+    if n > 0 && events.get("keyframe_matched") == 0 {
+        let text = format!(
+            "no scan could be matched, and in {n} no beam came back: their ranges are all at or beyond range_max, zero or not finite (are they in metres?)"
+        );
+        events.warn("laser_is_blind", text);
+    }
+}
+
 fn drive_through<R: Borrow<Record>>(
     system: WallSystem,
     truth: ReferencePath,
@@ -113,6 +124,7 @@ fn drive_through<R: Borrow<Record>>(
         bail!("none of the scans could be used ({n_before} are before the end of the resumed run){why}");
     }
     run.system.front_end.turns.warn_of_lag(&mut run.system.estimator.events, delay);
+    warn_of_blind_laser(run.events());
     run.system.front_end.odometry_scale.warn(&mut run.system.estimator.events);
     let samples = run.samples();
     let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {

@@ -97,6 +97,7 @@ impl LoggedViews {
             events: BTreeMap::new(),
         };
         let mut filter = DiscreteFilter::uniform(grid.n_states())?;
+        let (mut n_used, mut other_size) = (0, None);
         for (number, frame) in drive.frames.iter().enumerate() {
             let (row, image) = (frame.row.as_ref(), frame.image());
             if number > 0 {
@@ -111,13 +112,17 @@ impl LoggedViews {
             }
             match image.as_ref().and_then(decoded) {
                 Some(picture) if picture.dimensions() == size => {
+                    n_used += 1;
                     let measured = extracted(&picture, feature, params)?;
                     let outcome = filter.update(&appearance.log_likelihoods(&measured)?)?; // Eq. 6
                     if outcome == MeasurementOutcome::Impossible {
                         run.count("measurement_impossible");
                     }
                 }
-                Some(_) => run.count("frame_of_another_size"),
+                Some(picture) => {
+                    other_size = Some(picture.dimensions());
+                    run.count("frame_of_another_size");
+                }
                 None => run.count("frame_unreadable"),
             }
             let truth = row.and_then(|row| state(&grid, row));
@@ -128,7 +133,10 @@ impl LoggedViews {
                 break;
             }
         }
-        Ok(run)
+        match other_size {
+            Some(real) if n_used == 0 => Err(sizes(size, real)),
+            _ => Ok(run),
+        }
     }
 
     fn count(&mut self, name: &str) {
@@ -198,8 +206,7 @@ fn learn(
         n_pictures += 1;
         let size = *size.get_or_insert(picture.dimensions());
         if picture.dimensions() != size {
-            let sizes = [size, picture.dimensions()].map(|(width, height)| (width as usize, height as usize));
-            return Err(ViewsError::Sizes { learned: sizes[0], real: sizes[1] });
+            return Err(sizes(size, picture.dimensions()));
         }
         let Some(place) = place else { continue };
         let (n, sum) = sums.entry(place).or_default();
@@ -225,6 +232,11 @@ fn learn(
     };
     let rows: Vec<Vec<f64>> = (0..n_states).map(mean).collect();
     Ok((size.unwrap_or_default(), grid, StateDescriptorTable::from_rows(&rows)?))
+}
+
+fn sizes(learned: (u32, u32), real: (u32, u32)) -> ViewsError {
+    let [learned, real] = [learned, real].map(|(width, height)| (width as usize, height as usize));
+    ViewsError::Sizes { learned, real }
 }
 
 /// Transitions and diffusion of a logged drive: each row with a move and a place after a row with a place.
