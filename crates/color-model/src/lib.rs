@@ -26,9 +26,9 @@ pub use likelihood::{
     TileScratch, ViewOcclusionModel, gather,
 };
 pub use localizer::{
-    CameraLocation, CameraPoseError, CameraPoseNoise, ColorLocalizer, FrameOutcome, GlobalSearchParams,
-    LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep, PoseEstimate,
-    StartPosePrior,
+    CameraLocation, CameraPoseError, CameraPoseNoise, ColorLocalizer, ColorLocalizerModels, FrameOutcome,
+    GlobalSearchParams, LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep,
+    PoseEstimate, StartPosePrior,
 };
 pub use prior::{
     KMeans, LabelledPixels, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams,

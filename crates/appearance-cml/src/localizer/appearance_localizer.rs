@@ -174,7 +174,7 @@ where
     /// # Errors
     /// Returns an error if the covariance is not finite; the state is then unchanged.
     pub fn predict_unknown(&mut self, covariance: &Matrix3<f64>) -> Result<(), AppearanceMapError> {
-        let unknown = Motion { increment: Pose2::identity(), covariance: *covariance };
+        let unknown = Motion { increment: Pose2::identity(), covariance: *covariance, has_gap: true };
         let motion = self.motion.then(&unknown)?;
         self.belief = self.belief.moved(&unknown)?;
         self.motion = motion;
@@ -241,14 +241,14 @@ where
     }
 
     /// Whether the robot has moved since the last view that was used: by half a step, or, where the belief is unimodal, by an angle that a
-    /// comparison resolves. A view from the same pose carries no new information. A motion below its own σ is no motion.
+    /// comparison resolves. A view from the same pose carries no new information. A measured motion below its own σ is no motion.
     fn is_news(&self) -> bool {
-        let Motion { increment, covariance } = &self.motion;
+        let Motion { increment, covariance, has_gap } = &self.motion;
         let distance = self.motion.distance();
         let sigma = covariance.fixed_view::<2, 2>(0, 0).trace().sqrt();
         let has_moved = distance >= self.map.scale().step() / 2.0 && distance > sigma;
         let has_turned = increment.heading().abs() > HEADING_SIGMA && self.one_place().is_some();
-        !self.has_seen || has_moved || has_turned
+        !self.has_seen || *has_gap || has_moved || has_turned
     }
 
     /// The pose, if the belief is unimodal and no alternative is likely.

@@ -11,11 +11,13 @@ pub(crate) struct Motion {
     pub(crate) increment: Pose2<f64>,
     /// m² and rad².
     pub(crate) covariance: Matrix3<f64>,
+    /// Whether a part of it was not measured.
+    pub(crate) has_gap: bool,
 }
 
 impl Motion {
     pub(crate) fn none() -> Self {
-        Self { increment: Pose2::identity(), covariance: Matrix3::zeros() }
+        Self { increment: Pose2::identity(), covariance: Matrix3::zeros(), has_gap: false }
     }
 
     /// One odometry increment of a robot at `from`.
@@ -24,7 +26,11 @@ impl Motion {
         M: MotionModel<State = Pose2<f64>, Control = Pose2<f64>>,
     {
         let to = model.propagate(from, increment);
-        Self { increment: from.inverse().compose(&to), covariance: model.noise(from, increment) }
+        Self {
+            increment: from.inverse().compose(&to),
+            covariance: model.noise(from, increment),
+            has_gap: false,
+        }
     }
 
     /// This motion followed by `next`.
@@ -37,7 +43,7 @@ impl Motion {
         if !is_finite {
             return Err(AppearanceMapError::NotFinite { what: "odometry increment" });
         }
-        Ok(Self { increment, covariance })
+        Ok(Self { increment, covariance, has_gap: self.has_gap || next.has_gap })
     }
 
     /// Straight distance, m.
@@ -47,7 +53,7 @@ impl Motion {
 
     /// The belief at the end of the motion, from a belief at its start. [Gross et al. 2005, Eq. 1]
     pub(crate) fn applied(&self, belief: &Gaussian<Pose2<f64>>) -> Option<Gaussian<Pose2<f64>>> {
-        let start = Self { increment: *belief.mean(), covariance: *belief.covariance() };
+        let start = Self { increment: *belief.mean(), covariance: *belief.covariance(), has_gap: false };
         let end = start.then(self).ok()?;
         Some(Gaussian::from_parts_unchecked(end.increment, end.covariance))
     }

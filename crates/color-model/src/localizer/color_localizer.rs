@@ -86,6 +86,17 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     log_ratios: VecDeque<(f64, f64)>,
 }
 
+/// The models of a [`ColorLocalizer`].
+#[derive(Clone, Copy, Debug)]
+pub struct ColorLocalizerModels<T, M, L> {
+    /// The light before the first frame.
+    pub light: T,
+    /// The odometry.
+    pub odometry: M,
+    /// The likelihood of an image.
+    pub likelihood: L,
+}
+
 impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
     /// A localizer with this prior of the pose and this tracker of the light, with the odometry noise and the pixel likelihood of the parameters.
     ///
@@ -100,7 +111,8 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorLocalizer<T> {
         params: LocalizerParams,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
-        Self::with_models(map, camera, (light, params.odometry, params.pixels), start, params, rng)
+        let models = ColorLocalizerModels { light, odometry: params.odometry, likelihood: params.pixels };
+        Self::with_models(map, camera, models, start, params, rng)
     }
 }
 
@@ -117,12 +129,13 @@ where
     pub fn with_models<R: Rng + ?Sized>(
         map: Arc<ColorMap>,
         camera: PinholeCamera,
-        (light, odometry, likelihood): (T, M, L),
+        models: ColorLocalizerModels<T, M, L>,
         start: &StartPosePrior,
         params: LocalizerParams,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
+        let ColorLocalizerModels { light, odometry, likelihood } = models;
         let (expected, got) = (map.colors().len(), light.colors()?.len());
         if expected != got {
             return Err(ColorModelError::Dimension { what: "colours of the light", expected, got });

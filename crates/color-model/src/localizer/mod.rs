@@ -14,7 +14,7 @@ mod places;
 mod search;
 
 pub use camera::{CameraLocation, CameraPoseError, CameraPoseNoise};
-pub use color_localizer::ColorLocalizer;
+pub use color_localizer::{ColorLocalizer, ColorLocalizerModels};
 pub use estimate::PoseEstimate;
 pub use odometry::{OdometryModel, OdometryNoise, OdometryStep};
 pub use outcome::{FrameOutcome, LocalizationStatus};

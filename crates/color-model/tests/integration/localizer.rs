@@ -8,8 +8,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{ColorId, ColorMap, ColoredShape};
 use wayfix_color_model::{
-    ColorLocalizer, ColorModelError, FeatureLikelihoodParams, FrameOutcome, GlobalSearchParams,
-    ImageLikelihoodChoice, LocalizationStatus, LocalizerParams, OdometryStep, StartPosePrior, YuvImage,
+    ColorLocalizer, ColorLocalizerModels, ColorModelError, FeatureLikelihoodParams, FrameOutcome,
+    GlobalSearchParams, ImageLikelihoodChoice, LocalizationStatus, LocalizerParams, OdometryStep,
+    StartPosePrior, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -106,8 +107,8 @@ fn blobs_instead_of_pixels_correct_a_rough_start() {
         search: GlobalSearchParams { samples_per_place: 0.0, ..params().search },
         ..params()
     };
-    let models =
-        (bank(), params.odometry, ImageLikelihoodChoice::Features(FeatureLikelihoodParams::default()));
+    let likelihood = ImageLikelihoodChoice::Features(FeatureLikelihoodParams::default());
+    let models = ColorLocalizerModels { light: bank(), odometry: params.odometry, likelihood };
     let start = near(body.compose(&Pose2::new(0.2, -0.2, 0.2)));
     let map = scene.map.clone();
     let mut localizer =

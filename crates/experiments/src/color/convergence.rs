@@ -12,7 +12,7 @@ use wayfix_evaluation::{
 };
 use wayfix_scene_sim::league::{LampSetting, LeagueParams};
 use wayfix_scene_sim::random::RandomStreams;
-use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
+use wayfix_systems::color::{ColorRun, ColorRunSetup, ColorSystemParams, StartPose, run};
 
 use crate::error_quantiles::error_quantiles;
 
@@ -107,7 +107,11 @@ fn trial(
     params: &ColorSystemParams,
 ) -> Result<ConvergenceTrial> {
     let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
-    let run: ColorRun = run(&records, Arc::clone(map), bank.clone(), params, start, seed, |_| {})?;
+    let run: ColorRun = run(
+        &records,
+        ColorRunSetup { map: Arc::clone(map), bank: bank.clone(), params: params.clone(), start, seed },
+        |_| {},
+    )?;
     let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
     let reported_tracking = run
         .samples()

@@ -9,7 +9,7 @@ use wayfix_evaluation::{
     plot::{AxisScale, LinePlot, PlotSeries, statistics::median},
     report::{Metric, ReportRun},
 };
-use wayfix_systems::color::{ColorSystemParams, run};
+use wayfix_systems::color::{ColorRunSetup, ColorSystemParams, run};
 
 /// Numbers of particles, each kept fixed.
 const N_PARTICLES: [usize; 5] = [100, 300, 1000, 3000, 10_000];
@@ -33,7 +33,17 @@ pub(crate) fn frame_time(
     for n_particles in N_PARTICLES {
         let mut params = params.clone();
         params.localizer.max_particles = n_particles;
-        let run = run(&records[..end], Arc::clone(map), bank.clone(), &params, None, seed, |_| {})?;
+        let run = run(
+            &records[..end],
+            ColorRunSetup {
+                map: Arc::clone(map),
+                bank: bank.clone(),
+                params: params.clone(),
+                start: None,
+                seed,
+            },
+            |_| {},
+        )?;
         let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
         points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));
     }

@@ -13,7 +13,7 @@ use wayfix_evaluation::{
     errors::MeanInterval,
     report::{Metric, ReportRun},
 };
-use wayfix_systems::color::{ColorSystemParams, run, summarize};
+use wayfix_systems::color::{ColorRunSetup, ColorSystemParams, run, summarize};
 
 /// A drive in random halls: means over halls with 95 % intervals.
 /// # Errors
@@ -29,8 +29,17 @@ pub(crate) fn other_halls(
     let runs: Vec<ReportRun> = seeds
         .par_iter()
         .map(|&seed| {
-            let mut run =
-                run(&drive(seed, drive_params)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+            let mut run = run(
+                &drive(seed, drive_params)?,
+                ColorRunSetup {
+                    map: Arc::clone(map),
+                    bank: bank.clone(),
+                    params: params.clone(),
+                    start: None,
+                    seed,
+                },
+                |_| {},
+            )?;
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;

@@ -14,7 +14,7 @@ use wayfix_evaluation::{
     plot::{LinePlot, PlotSeries},
     report::{Metric, ReportRun},
 };
-use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
+use wayfix_systems::color::{ColorRun, ColorRunSetup, ColorSystemParams, run, tally};
 
 /// The classification rate [Schulz & Fox 2004, Fig. 6] frame by frame under switched light, of a jump Markov model and of one Gaussian, both
 /// while localizing; and of every light tracker with known poses.
@@ -32,7 +32,17 @@ pub(crate) fn switching(
     seed: u64,
 ) -> Result<ReportRun> {
     let localized = |bank: &LightingFilterBank| -> Result<Curve> {
-        let run = run(records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+        let run = run(
+            records,
+            ColorRunSetup {
+                map: Arc::clone(map),
+                bank: bank.clone(),
+                params: params.clone(),
+                start: None,
+                seed,
+            },
+            |_| {},
+        )?;
         Ok(rates(&run))
     };
     let curves = [("jump_markov", localized(bank)?), ("single_gaussian", localized(single)?)];

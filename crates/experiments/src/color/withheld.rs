@@ -10,7 +10,7 @@ use wayfix_evaluation::{
 };
 use wayfix_scene_sim::league::LeagueParams;
 use wayfix_sensor_log::Record;
-use wayfix_systems::color::{ColorSystemParams, priors, rate_of, run};
+use wayfix_systems::color::{ColorRunSetup, ColorSystemParams, priors, rate_of, run};
 
 use super::halls::drive;
 
@@ -100,7 +100,11 @@ fn rates(
             let mut params = params.clone();
             params.localizer.withheld_color = Some(color);
             let bank = priors::bank(&kinds[kind], &params)?;
-            let run = run(records, Arc::clone(map), bank, &params, None, seed, |_| {})?;
+            let run = run(
+                records,
+                ColorRunSetup { map: Arc::clone(map), bank, params, start: None, seed },
+                |_| {},
+            )?;
             let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());
             Ok(rate_of(labelled, ColorId(color as u8), MIN_PIXELS))
         })

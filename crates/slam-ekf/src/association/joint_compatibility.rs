@@ -23,13 +23,14 @@ use crate::{
 pub struct JointCompatibilityParams {
     /// Probability with which correct pairings pass, individually and jointly: chi-squared quantiles with their degrees of freedom.
     pub gate_probability: f64,
-    /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored.
+    /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored. Default 40: a chi-squared variable of two degrees of freedom
+    /// exceeds it with a probability of 2e-9.
     pub new_landmark_nis: f64,
     /// Minimum difference between the NIS of a pairing and those of all other candidates of the observation; otherwise the observation is ambiguous
     /// and ignored. 0 always takes the best. Parallel walls and rows of trees need a larger value.
     pub ambiguity_margin: f64,
     /// Maximum number of pairings tried per scan. When it is reached, the best set so far is used. Unlike a limit in milliseconds, it gives
-    /// the same result on every machine.
+    /// the same result on every machine. Default 2000.
     pub max_pairings: usize,
     /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
     /// another landmark. `false` for detectors that may split a trunk in two.

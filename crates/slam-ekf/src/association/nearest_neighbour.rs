@@ -19,7 +19,8 @@ use crate::{
 pub struct NearestNeighbourParams {
     /// NIS up to which an observation is associated with its nearest landmark. 13.8 is the 0.999 quantile for range and bearing.
     pub gate_nis: f64,
-    /// NIS above which it is certainly of none. In between it is ignored: it neither corrects nor becomes a landmark.
+    /// NIS above which it is certainly of none. In between it is ignored: it neither corrects nor becomes a landmark. Default 40: a chi-squared variable of two degrees
+    /// of freedom exceeds it with a probability of 2e-9.
     pub new_landmark_nis: f64,
     /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
     /// another landmark. `false` for detectors that may split a trunk in two.

@@ -19,6 +19,7 @@ const NOT_NEGATIVE: Range = (0.0..=1e6, "from 0 to 1e6");
 const SENSOR_NOISE: Range = (1e-9..=1e6, "from 1e-9 to 1e6");
 /// A standard deviation of an angle.
 const ANGLE_NOISE: Range = (1e-9..=PI, "from 1e-9 to π rad");
+const COMMON_ANGLE_NOISE: Range = (0.0..=PI, "from 0 to π rad");
 /// Beyond a turn an angle is in degrees.
 const ANGLE: Range = (-TAU..=TAU, "from -2π to 2π rad");
 const TIMES_SEEN: Range = (1.0..=1e6, "from 1 to 1e6");
@@ -80,7 +81,7 @@ impl PointSlamParams {
             ),
             number!(in "sensor", correlated_noise.independent_bearing_sigma, ANGLE_NOISE),
             number!(in "sensor", correlated_noise.common_range_sigma_per_meter, NOT_NEGATIVE),
-            number!(in "sensor", correlated_noise.common_bearing_sigma, NOT_NEGATIVE),
+            number!(in "sensor", correlated_noise.common_bearing_sigma, COMMON_ANGLE_NOISE),
             number!(in "filter", merging.min_separation, NOT_NEGATIVE),
             number!(in "filter", merging.n_sigmas, NOT_NEGATIVE),
             number!(sensor.sensor_range, THRESHOLD),

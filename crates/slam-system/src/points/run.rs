@@ -113,7 +113,8 @@ fn drive_through<R: Borrow<Record>>(
 ) -> Result<PointRun> {
     let last_odometry = overview.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let mut run = SlamRun::new(system, &truth, true_landmarks(overview)).through(records, observe);
-    warn_of_gross_errors(run.events());
+    let gate_probability = run.system.filter().params().gate_probability;
+    warn_of_gross_errors(run.events(), gate_probability);
     let last_truth = run.truth.last_stamp().or(run.true_positions.last_stamp());
     run.evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;

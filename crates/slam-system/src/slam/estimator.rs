@@ -42,7 +42,7 @@ where
     /// Smoothes what the filter pairs.
     pub(crate) follower: Option<Box<dyn SlamFollower<M>>>,
     pub(crate) dead_reckoning: Pose2<f64>,
-    pub(super) stamped_estimates: Decimated<StampedEstimate>,
+    pub(crate) stamped_estimates: Decimated<StampedEstimate>,
     /// Those that came with the last record.
     pub(super) newest_estimates: Vec<StampedEstimate>,
     /// Longest computing time of an estimate.

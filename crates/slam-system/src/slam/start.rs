@@ -35,14 +35,16 @@ pub(crate) fn warn_of_retired_landmarks(events: &mut EventCounts, n_retired: usi
 /// Share of gross errors in routine data: 1 to 10 %. [Hampel et al. 1986, section 1.2c]
 const LARGEST_GROSS_SHARE: f64 = 0.1;
 
-/// Says when more observations lie outside their gates than outliers of a sensor explain.
-pub(crate) fn warn_of_gross_errors(events: &mut EventCounts) {
+/// Says when more observations lie outside their gates than those of a consistent filter, which pass with `gate_probability`, and outliers of a sensor explain.
+pub(crate) fn warn_of_gross_errors(events: &mut EventCounts, gate_probability: f64) {
     let outside =
         ["observation_downweighted", "observation_rejected_by_gate", "tentative_landmark_restarted"];
     let n_outside: u64 = outside.iter().map(|name| events.get(name)).sum();
     let n_all = n_outside + events.get("observation_accepted");
-    let share = n_outside as f64 / n_all.max(1) as f64;
-    if share > LARGEST_GROSS_SHARE {
+    let n = n_all.max(1) as f64;
+    let (share, expected) = (n_outside as f64 / n, LARGEST_GROSS_SHARE + (1.0 - gate_probability));
+    // Three standard deviations of a binomial share.
+    if share > expected + 3.0 * (expected * (1.0 - expected) / n).max(0.0).sqrt() {
         let percent = 100.0 * share;
         let text = format!(
             "{n_outside} of {n_all} observations ({percent:.0} %) contradict odometry and map: check units and signs of both, identities, stamps, and the noise of the parameters"

@@ -1,7 +1,7 @@
 use std::collections::{BTreeSet, VecDeque};
 
 use nalgebra::{Matrix3, Vector2};
-use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2, wrap_angle};
 use wayfix_evaluation::plot::ScanSample;
 use wayfix_line_extract::{LineExtractor, WallSegment};
 use wayfix_scan_match::ScanMatcher;
@@ -301,6 +301,7 @@ impl WallSlamFrontEnd {
                 self.predict_to_scan(estimator)?;
                 let observations = self.walls_among(&found.segments, &scan.laser, estimator);
                 let keyframe = self.last_keyframe.insert(KeyframeScan { scan, cloud });
+                self.dead_reckoning_at_keyframe = Some(estimator.dead_reckoning);
                 self.laser_heading = Some(0.0);
                 let report = estimator.update(&observations, |wall| {
                     format!(
@@ -320,9 +321,11 @@ impl WallSlamFrontEnd {
 
     /// Compares the motion from the last keyframe to a new one by odometry and by the scans alone.
     fn compare_with_odometry(&mut self, matched: Option<KeyframeMatch>, dead_reckoning: &Pose2<f64>) {
-        let from = self.dead_reckoning_at_keyframe.replace(*dead_reckoning);
-        if let (Some(from), Some(KeyframeMatch { guess, found })) = (from, matched) {
-            self.odometry_scale.add(&from.inverse().compose(dead_reckoning), &guess, &found);
+        if let (Some(from), Some(KeyframeMatch { guess, found })) = (self.dead_reckoning_at_keyframe, matched)
+        {
+            let odometry = from.inverse().compose(dead_reckoning);
+            let noise = self.params.increment_noise.noise(&from, &odometry);
+            self.odometry_scale.add(&odometry, &noise, &guess, &found);
         }
     }
 

@@ -97,12 +97,11 @@ pub fn run_on<R: Borrow<Record>>(
     drive_through(system, track, truth::true_walls(overview), records, observe)
 }
 
-/// Says when no scan was matched and some had no echo at all.
-fn warn_of_blind_laser(events: &mut EventCounts) {
-    let n = events.get("scan_without_echo");
-    if n > 0 && events.get("keyframe_matched") == 0 {
+/// Says when no scan has an echo.
+fn warn_of_blind_laser(events: &mut EventCounts, n_scans: u64) {
+    if events.get("scan_without_echo") >= n_scans {
         let text = format!(
-            "no scan could be matched, and in {n} no beam came back: their ranges are all at or beyond range_max, zero or not finite (are they in metres?)"
+            "no beam of {n_scans} scans came back: all ranges are at or beyond range_max, zero or not finite (are they in metres?)"
         );
         events.warn("laser_is_blind", text);
     }
@@ -124,7 +123,8 @@ fn drive_through<R: Borrow<Record>>(
         bail!("none of the scans could be used ({n_before} are before the end of the resumed run){why}");
     }
     run.system.front_end.turns.warn_of_lag(&mut run.system.estimator.events, delay);
-    warn_of_blind_laser(run.events());
+    let n_scans = run.system.estimator.stamped_estimates.n_seen() as u64;
+    warn_of_blind_laser(run.events(), n_scans);
     run.system.front_end.odometry_scale.warn(&mut run.system.estimator.events);
     let samples = run.samples();
     let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, PoseWithTruth)| {

@@ -32,7 +32,7 @@ impl OdometryRecordKind {
 /// The motion of a robot by the increments or the velocities of a log.
 ///
 /// If a log records its motion in both kinds, the kind that comes first moves the robot, and the other is counted and ignored. A velocity holds until the
-/// next, at most for the time-out; the motion after that is unknown.
+/// next, at most for the time-out; the motion after that is unknown. Drives of a car are not followed.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{Record, RecordData, Stamp, Velocity};
@@ -53,9 +53,9 @@ pub struct LoggedOdometry {
     kind: Option<OdometryRecordKind>,
     plausible: IncrementPlausibilityCheck,
     velocity: HeldVelocity,
-    /// Of the last increment.
-    last: Option<Stamp>,
     statistics: MotionStatistics,
+    /// Time since the velocity expired, s.
+    unknown_seconds: f64,
 }
 
 /// A motion that odometry measured, and the time after it in which it did not.
@@ -65,6 +65,8 @@ pub struct LoggedMotion {
     pub increment: Pose2<f64>,
     /// Time without a measured motion, s.
     pub unknown_seconds: f64,
+    /// Covariance of the motion in that time, m² and rad²: at the RMS speed and turn rate so far, in an unknown direction.
+    pub unknown_covariance: Matrix3<f64>,
 }
 
 impl LoggedOdometry {
@@ -75,8 +77,8 @@ impl LoggedOdometry {
             kind: None,
             plausible: IncrementPlausibilityCheck::default(),
             velocity: HeldVelocity::default(),
-            last: None,
             statistics: MotionStatistics::default(),
+            unknown_seconds: 0.0,
         }
     }
 
@@ -89,23 +91,26 @@ impl LoggedOdometry {
         record: &Record,
         events: &mut EventCounts,
     ) -> Result<Option<LoggedMotion>, String> {
-        let Some(kind) = OdometryRecordKind::of(&record.data) else { return Ok(None) };
-        if *self.kind.get_or_insert(kind) != kind {
+        let kind = OdometryRecordKind::of(&record.data);
+        if let (Some(kind), Some(moves)) = (kind, self.kind)
+            && kind != moves
+        {
             events.count("second_odometry_source_ignored");
             return Ok(None);
         }
         match &record.data {
             RecordData::OdometryIncrement(increment) => {
                 self.plausible.check(record.stamp, increment)?;
-                if let Some(last) = self.last.replace(record.stamp) {
-                    self.statistics.add(increment, record.stamp.seconds_since(last));
-                }
-                Ok(Some(LoggedMotion { increment: *increment, unknown_seconds: 0.0 }))
+                self.kind = kind;
+                let (unknown_seconds, unknown_covariance) = (0.0, Matrix3::zeros());
+                Ok(Some(LoggedMotion { increment: *increment, unknown_seconds, unknown_covariance }))
             }
             RecordData::Velocity(velocity) => {
                 check_velocity(*velocity)?;
+                self.kind = kind;
                 let motion = self.advance_to(record.stamp, events);
                 self.velocity.hold(record.stamp, *velocity)?;
+                self.unknown_seconds = 0.0;
                 Ok(motion)
             }
             _ => Ok(None),
@@ -120,14 +125,16 @@ impl LoggedOdometry {
             let timeout = self.velocity_timeout;
             events.warn(
                 "motion_unknown",
-                format!("velocities are missing for more than {timeout} s: the motion is unknown there (velocity_timeout)"),
+                format!("velocities are missing for more than {timeout} s: the motion is unknown there"),
             );
         }
-        Some(LoggedMotion { increment: held.increment, unknown_seconds: held.unknown_seconds })
-    }
-
-    /// Covariance of an unknown motion over `seconds`: at the RMS speed and turn rate so far, in an unknown direction.
-    pub fn unknown_motion(&self, seconds: f64) -> Matrix3<f64> {
-        self.statistics.unknown_motion(seconds)
+        let before = self.statistics.unknown_motion(self.unknown_seconds);
+        self.unknown_seconds += held.unknown_seconds;
+        Some(LoggedMotion {
+            increment: held.increment,
+            unknown_seconds: held.unknown_seconds,
+            // The direction stays the same: the covariance grows with the square of the time, however often it is asked for.
+            unknown_covariance: self.statistics.unknown_motion(self.unknown_seconds) - before,
+        })
     }
 }

@@ -34,10 +34,10 @@ impl TurnHistory {
     /// Warns if odometry is stamped late relative to scans or images, and names the parameter that corrects it; `delay` is its current value.
     pub fn warn_of_lag(&self, events: &mut EventCounts, delay: f64) {
         let lag = odometry_lag(&self.odometry, &self.seen);
-        if lag.is_some_and(|lag| lag.is_at_the_edge) {
+        if let Some(Lag { seconds: lag, is_at_the_edge: true }) = lag {
             events.warn(
                 "odometry_lags",
-                format!("odometry and what the sensor shows agree best at the largest shift tried, {LARGEST_LAG} s: their clocks differ by more, or one of them is wrong"),
+                format!("odometry and what the sensor shows agree best at the largest shift tried, {:.2} s: their clocks differ by more, or one of them is wrong", lag.abs()),
             );
         } else if let Some(Lag { seconds: lag, .. }) = lag {
             let delay = delay + lag;
@@ -83,7 +83,7 @@ fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Op
     let gain = stretches.len() as f64 * (disagreement(0.0) / disagreement(lag)).ln();
     // A shift that helps in both directions only smooths noise and is no lag.
     (gain > LIKELIHOOD_RATIO_THRESHOLD && disagreement(-lag) > disagreement(0.0))
-        .then_some(Lag { seconds: lag, is_at_the_edge: n.abs() == n_periods })
+        .then_some(Lag { seconds: lag, is_at_the_edge: n.abs() == n_periods && n_periods > 1 })
 }
 
 /// Heading by odometry, interpolated between the scans.

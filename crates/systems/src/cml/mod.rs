@@ -25,6 +25,6 @@ pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};
 pub use plan::{CameraViewGeometry, CmlRunPlan, N_EVIDENCE};
 pub use plots::plots;
 pub use reader::ViewDescriptorReader;
-pub use run::{CmlRun, CmlStartPose, CmlTask, first_true_pose, run, run_streamed};
+pub use run::{CmlRun, CmlRunSetup, CmlStartPose, CmlTask, first_true_pose, run, run_streamed};
 pub use saved::{PeriodicMapSaver, SavedViewMapError, end_note, read_map};
 pub use system::{CmlSystem, CmlViewResult, PanoramaLocalizer, PanoramaMap};

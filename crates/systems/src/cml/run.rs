@@ -54,21 +54,29 @@ pub struct CmlRun {
     pub notes: Vec<String>,
 }
 
+/// Everything that a run needs beside its records.
+pub struct CmlRunSetup<'a> {
+    /// The system with its map.
+    pub system: CmlSystem,
+    /// The views to learn and to localize.
+    pub plan: &'a CmlRunPlan,
+    /// What the run is for.
+    pub task: CmlTask,
+    /// The start pose.
+    pub start: CmlStartPose,
+    /// The parameters.
+    pub params: &'a CmlParams,
+    /// Seed of the start pose.
+    pub seed: u64,
+}
+
 /// Learns the training views of a plan, sets the start pose and processes the records, showing each step to `observe`.
 ///
 /// # Errors
 /// Returns an error if there is no usable image.
-pub fn run(
-    system: CmlSystem,
-    plan: &CmlRunPlan,
-    task: CmlTask,
-    start: CmlStartPose,
-    params: &CmlParams,
-    seed: u64,
-    observe: impl FnMut(RunStep<'_, CmlSystem>),
-) -> Result<CmlRun> {
-    let records = without_odometry_delay(&plan.records, params.odometry_delay);
-    run_streamed(system, plan, records.iter(), task, start, params, seed, observe)
+pub fn run(setup: CmlRunSetup<'_>, observe: impl FnMut(RunStep<'_, CmlSystem>)) -> Result<CmlRun> {
+    let records = without_odometry_delay(&setup.plan.records, setup.params.odometry_delay);
+    run_streamed(setup, records.iter(), observe)
 }
 
 /// As [`run`], with the records one by one: a long log need not be kept. The records of the plan are then the
@@ -76,17 +84,12 @@ pub fn run(
 ///
 /// # Errors
 /// Returns the errors of [`run`].
-#[expect(clippy::too_many_arguments, reason = "those of `run`, and the records twice")]
 pub fn run_streamed<R: Borrow<Record>>(
-    mut system: CmlSystem,
-    plan: &CmlRunPlan,
+    setup: CmlRunSetup<'_>,
     records: impl IntoIterator<Item = R>,
-    task: CmlTask,
-    start: CmlStartPose,
-    params: &CmlParams,
-    seed: u64,
     mut observe: impl FnMut(RunStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
+    let CmlRunSetup { mut system, plan, task, start, params, seed } = setup;
     if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
@@ -118,7 +121,8 @@ pub fn run_streamed<R: Borrow<Record>>(
         headings_are_measured: plan.headings_are_measured,
         notes: plan.notes.clone(),
     };
-    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let certain = run.samples().into_iter().filter(|(frame, _)| frame.is_certain);
+    let samples: Vec<PoseWithTruth> = certain.map(|(_, sample)| sample).collect();
     warn_of_large_errors(run.system.events(), &run.truth, &samples);
     Ok(run)
 }

@@ -183,8 +183,7 @@ impl CmlSystem {
         if motion.unknown_seconds == 0.0 {
             return Ok(());
         }
-        let covariance = self.odometry.unknown_motion(motion.unknown_seconds);
-        self.localizer.predict_unknown(&covariance).map_err(|error| error.to_string())
+        self.localizer.predict_unknown(&motion.unknown_covariance).map_err(|error| error.to_string())
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {

@@ -21,5 +21,5 @@ pub use map::{field_lines, read_map};
 pub use params::{ColorSystemParams, StartPoseUncertainty};
 pub use particle_film::ParticleSnapshots;
 pub use plots::{film, plots, uv_ellipses};
-pub use run::{ColorRun, n_images, run, run_streamed};
+pub use run::{ColorRun, ColorRunSetup, n_images, run, run_streamed};
 pub use system::{ColorFrameResult, ColorSystem, StartPose};

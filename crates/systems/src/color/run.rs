@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_color_map::ColorMap;
-use wayfix_color_model::LightingFilterBank;
+use wayfix_color_model::{LightingFilterBank, LocalizationStatus};
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
@@ -26,24 +26,32 @@ pub struct ColorRun {
     pub(super) totals: ColorTotals,
 }
 
+/// Everything that a run needs beside its log.
+#[derive(Clone)]
+pub struct ColorRunSetup {
+    /// The map.
+    pub map: Arc<ColorMap>,
+    /// The light before the first image.
+    pub bank: LightingFilterBank,
+    /// The parameters.
+    pub params: ColorSystemParams,
+    /// The start pose. `None` draws it around the first true pose with the stated uncertainty; without truth the search is global.
+    pub start: Option<StartPose>,
+    /// Seed of the particles, and of the start pose.
+    pub seed: u64,
+}
+
 /// Processes the records of a log with the localizer and shows each step to `observe`.
-///
-/// `start` is the start pose. With `None` the start is drawn around the first true pose with the stated uncertainty; without truth the search
-/// is global.
 ///
 /// # Errors
 /// Returns an error if there is no usable image.
 pub fn run(
     records: &[Record],
-    map: Arc<ColorMap>,
-    bank: LightingFilterBank,
-    params: &ColorSystemParams,
-    start: Option<StartPose>,
-    seed: u64,
+    setup: ColorRunSetup,
     observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
-    let in_time = without_odometry_delay(records, params.odometry_delay);
-    run_streamed(records, in_time.iter(), map, bank, params, start, seed, observe)
+    let in_time = without_odometry_delay(records, setup.params.odometry_delay);
+    run_streamed(records, in_time.iter(), setup, observe)
 }
 
 /// As [`run`], with the records one by one: a long log need not be kept. `overview` is the same log, whose images may be empty; a delay of odometry was
@@ -51,17 +59,13 @@ pub fn run(
 ///
 /// # Errors
 /// Returns the errors of [`run`].
-#[expect(clippy::too_many_arguments, reason = "those of `run`, and the records twice")]
 pub fn run_streamed<R: Borrow<Record>>(
     overview: &[Record],
     records: impl IntoIterator<Item = R>,
-    map: Arc<ColorMap>,
-    bank: LightingFilterBank,
-    params: &ColorSystemParams,
-    start: Option<StartPose>,
-    seed: u64,
+    setup: ColorRunSetup,
     mut observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
+    let ColorRunSetup { map, bank, params, start, seed } = setup;
     let Some(first_image) = overview.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
@@ -69,10 +73,10 @@ pub fn run_streamed<R: Borrow<Record>>(
     let truth = ReferencePath::from_records(overview);
     let known = TrueStartPose::at(first_image.stamp, &truth, overview).filter(|_| start.is_none());
     let start = start.unwrap_or_else(|| match known {
-        Some(known) => StartPose::Near(guess(&known.pose, params, seed)),
+        Some(known) => StartPose::Near(guess(&known.pose, &params, seed)),
         None => StartPose::Anywhere,
     });
-    let mut system = ColorSystem::new(map, bank, params.clone(), start, seed);
+    let mut system = ColorSystem::new(map, bank, params, start, seed);
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }
@@ -94,7 +98,9 @@ pub fn run_streamed<R: Borrow<Record>>(
         system.frames().first().zip(system.latest()).map(|(first, last)| (first.stamp, last.stamp));
     warn_of_no_overlap(system.events(), &truth, estimated);
     let mut run = ColorRun { system, truth, totals };
-    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let is_tracked = |frame: &ColorFrameResult| frame.status == LocalizationStatus::Tracking;
+    let tracked = run.samples().into_iter().filter(|(frame, _)| is_tracked(frame));
+    let samples: Vec<PoseWithTruth> = tracked.map(|(_, sample)| sample).collect();
     warn_of_large_errors(run.system.events(), &run.truth, &samples);
     Ok(run)
 }

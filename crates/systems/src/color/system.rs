@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{ColorMap, PinholeCamera};
 use wayfix_color_model::{
-    ColorDensity, ColorLocalizer, ColorLookUpTable, ImageLikelihoodChoice, LightingFilterBank,
-    LocalizationStatus, OdometryNoise, OdometryStep, PixelClassifier, StartPosePrior, YuvImage,
+    ColorDensity, ColorLocalizer, ColorLocalizerModels, ColorLookUpTable, ImageLikelihoodChoice,
+    LightingFilterBank, LocalizationStatus, OdometryNoise, OdometryStep, PixelClassifier, StartPosePrior,
+    YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
@@ -56,7 +57,7 @@ struct Pending {
     since: Option<Stamp>,
 }
 
-/// The last image that was used, and the motion since.
+/// An image that differs from the one before, and the motion since.
 struct LastImage {
     image: EncodedImage,
     moved: Pose2<f64>,
@@ -201,27 +202,28 @@ impl ColorSystem {
     }
 
     /// Refuses an image that repeats the last one although the robot has turned by more than a pixel, or moved as far as turns a view at 1 m so.
-    fn check_is_new(&mut self, image: &EncodedImage, info: &CameraInfo) -> Result<(), String> {
-        if let Some(LastImage { image: last, moved }) = &self.last_image
-            && last == image
-        {
-            let pixels = (moved.translation.norm() + moved.heading().abs()) * info.fx;
-            return match pixels > 1.0 {
-                true => Err(format!(
-                    "the image repeats the one before, although odometry has moved it by some {pixels:.0} pixels: the camera hangs"
-                )),
-                false => Ok(()),
-            };
+    fn check_is_new(&mut self, image: &EncodedImage, pixels: &[u8], fx: f64) -> Result<(), String> {
+        let Some(LastImage { moved, .. }) = self.last_image.as_ref().filter(|last| last.image == *image)
+        else {
+            self.last_image = Some(LastImage { image: image.clone(), moved: Pose2::identity() });
+            return Ok(());
+        };
+        let shift = (moved.translation.norm() + moved.heading().abs()) * fx;
+        // A covered camera, or one without light, sees the same everywhere.
+        let is_blank = pixels.iter().max().zip(pixels.iter().min()).is_none_or(|(most, least)| most == least);
+        if shift > 1.0 && !is_blank {
+            return Err(format!(
+                "the image repeats the one before, although odometry has moved it by some {shift:.0} pixels: the camera hangs"
+            ));
         }
-        self.last_image = Some(LastImage { image: image.clone(), moved: Pose2::identity() });
         Ok(())
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
         let info = self.camera.ok_or("no camera info before this image")?;
-        self.check_is_new(image, &info)?;
         let mount = self.mount.ok_or("no camera mount before this image")?;
         let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
+        self.check_is_new(image, &decoded.pixels, info.fx)?;
         let image =
             YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, self.params.yuv_standard)
                 .map_err(|error| error.to_string())?;
@@ -265,7 +267,11 @@ impl ColorSystem {
             none => none.insert(ColorLocalizer::with_models(
                 Arc::clone(&self.map),
                 PinholeCamera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
-                (self.bank.clone(), self.params.localizer.odometry, self.params.likelihood()),
+                ColorLocalizerModels {
+                    light: self.bank.clone(),
+                    odometry: self.params.localizer.odometry,
+                    likelihood: self.params.likelihood(),
+                },
                 &start(self.start, &self.params)?,
                 self.params.localizer,
                 &mut self.rng,

@@ -12,8 +12,8 @@ use wayfix_sensor_log::{
 use wayfix_slam_ekf::ExternalParams;
 use wayfix_system_core::System;
 use wayfix_systems::cml::{
-    self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask, PanoramaMap,
-    ViewDescriptorReader,
+    self, CameraViewGeometry, CmlParams, CmlRun, CmlRunPlan, CmlRunSetup, CmlStartPose, CmlSystem, CmlTask,
+    PanoramaMap, ViewDescriptorReader,
 };
 
 const SIGMA: f64 = 0.05;
@@ -41,7 +41,9 @@ fn localized_by(records: Vec<Record>, localizer: LocalizerParams) -> CmlRun {
     let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
     let system = CmlSystem::new(&params, reader, PanoramaMap::default()).expect("valid parameters");
     let task = CmlTask::ConcurrentMapBuilding;
-    cml::run(system, &plan, task, CmlStartPose::Exactly(start), &params, 1, |_| {}).expect("usable views")
+    let start = CmlStartPose::Exactly(start);
+    let setup = CmlRunSetup { system, plan: &plan, task, start, params: &params, seed: 1 };
+    cml::run(setup, |_| {}).expect("usable views")
 }
 
 fn measured(stamp: Stamp, frame: &str, quantity: MeasuredQuantity, sigma: Option<f64>) -> Record {
@@ -143,8 +145,9 @@ fn a_second_camera_corrects_the_first() {
     let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
     let system = CmlSystem::new(&params, reader, PanoramaMap::default()).expect("valid parameters");
     let start = CmlStartPose::Anywhere;
-    let matched = cml::run(system, &plan, CmlTask::LearnThenLocalize, start, &params, 1, |_| {});
-    let matched = matched.expect("usable views");
+    let task = CmlTask::LearnThenLocalize;
+    let setup = CmlRunSetup { system, plan: &plan, task, start, params: &params, seed: 1 };
+    let matched = cml::run(setup, |_| {}).expect("usable views");
     let measurements = matched.system.frames().iter().filter_map(|frame| {
         let data = RecordData::PoseMeasurement(frame.pose_measurement()?);
         Some(Record { stamp: frame.stamp, data })

@@ -6,14 +6,14 @@ use nalgebra::Vector3;
 use wayfix_appearance_cml::PanoramaDescriptorParams;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{LogOpenOptions, Record, RecordData, Velocity, open};
+use wayfix_sensor_log::{AckermannDrive, LogOpenOptions, Record, RecordData, Velocity, open};
 use wayfix_system_core::System;
 use wayfix_systems::{
     cml::{
-        self, CameraViewGeometry, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask, PanoramaMap,
-        ViewDescriptorReader,
+        self, CameraViewGeometry, CmlParams, CmlRunPlan, CmlRunSetup, CmlStartPose, CmlSystem, CmlTask,
+        PanoramaMap, ViewDescriptorReader,
     },
-    color::{self, ColorSystemParams, priors, read_map},
+    color::{self, ColorRunSetup, ColorSystemParams, priors, read_map},
 };
 
 /// The first `seconds` of a stored log.
@@ -77,7 +77,8 @@ fn cml(records: Vec<Record>) -> Outcome {
     let reader = ViewDescriptorReader::new(PanoramaDescriptorParams::default(), None);
     let system = CmlSystem::new(&params, reader, PanoramaMap::default()).expect("valid parameters");
     let (task, start) = (CmlTask::ConcurrentMapBuilding, CmlStartPose::Exactly(start));
-    let mut run = cml::run(system, &plan, task, start, &params, 1, |_| {}).expect("usable views");
+    let setup = CmlRunSetup { system, plan: &plan, task, start, params: &params, seed: 1 };
+    let mut run = cml::run(setup, |_| {}).expect("usable views");
     let poses = run.system.frames().iter().filter_map(|frame| frame.pose.clone()).collect();
     outcome(poses, &mut run.system)
 }
@@ -88,7 +89,8 @@ fn color(records: &[Record]) -> Outcome {
     let params = ColorSystemParams::default();
     let bank = priors::bank(&priors::built_in().expect("priors"), &params).expect("a bank");
     let map = Arc::new(read_map(field.as_ref()).expect("a map"));
-    let mut run = color::run(records, map, bank, &params, None, 1, |_| {}).expect("images");
+    let setup = ColorRunSetup { map, bank, params, start: None, seed: 1 };
+    let mut run = color::run(records, setup, |_| {}).expect("images");
     let poses = run.system.frames().iter().map(|frame| frame.pose.clone()).collect();
     outcome(poses, &mut run.system)
 }
@@ -133,6 +135,15 @@ fn missing_velocities_widen_the_belief() {
     assert!((whole.event)("motion_unknown") == 0 && (gap.event)("motion_unknown") > 0);
     let variance = |outcome: &Outcome| outcome.last().covariance().trace();
     assert!(variance(&gap) > 2.0 * variance(&whole), "{} {}", variance(&gap), variance(&whole));
+}
+
+#[test]
+fn drives_of_a_car_do_not_stop_what_else_moves() {
+    let store = log("store_area.mcap", 10.0);
+    let stamp = store.first().expect("records").stamp;
+    let drive = RecordData::Ackermann(AckermannDrive { wheel_speed: 0.0, steering: 0.0 });
+    let with = merged(vec![Record { stamp, data: drive }], store.clone());
+    assert_eq!(cml(with).poses, cml(store).poses);
 }
 
 #[test]

@@ -6,8 +6,8 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_sensor_log::LogOpenOptions;
 use wayfix_system_core::{RunStep, System};
 use wayfix_systems::cml::{
-    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlStartPose, CmlSystem,
-    CmlTask, PanoramaMap, ViewDescriptorReader,
+    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRun, CmlRunPlan, CmlRunSetup, CmlStartPose,
+    CmlSystem, CmlTask, PanoramaMap, ViewDescriptorReader,
 };
 use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
@@ -125,5 +125,6 @@ fn from_nothing(
     let reader = ViewDescriptorReader::new(params.panorama_descriptor, None);
     let system = CmlSystem::new(&params, reader, PanoramaMap::default())?;
     let task = CmlTask::ConcurrentMapBuilding;
-    cml::run(system, &plan, task, CmlStartPose::Exactly(start), &params, job.options.seed, observe)
+    let (start, seed) = (CmlStartPose::Exactly(start), job.options.seed);
+    cml::run(CmlRunSetup { system, plan: &plan, task, start, params: &params, seed }, observe)
 }

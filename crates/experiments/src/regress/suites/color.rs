@@ -10,7 +10,9 @@ use wayfix_scene_sim::{
 };
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_system_core::{RunStep, System};
-use wayfix_systems::color::{self, ColorEstimateRecorder, ColorSystemParams, ParticleSnapshots, priors};
+use wayfix_systems::color::{
+    self, ColorEstimateRecorder, ColorRunSetup, ColorSystemParams, ParticleSnapshots, priors,
+};
 
 use crate::color::{self as experiments, TrainingHalls};
 
@@ -211,18 +213,11 @@ fn localize(
     let records = first_seconds(records, quick_s.filter(|_| job.options.quick));
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleSnapshots::new(color::n_images(&records));
-    let mut run = color::run(
-        &records,
-        map,
-        bank,
-        params,
-        None,
-        job.options.seed,
-        |RunStep { system, record, .. }| {
-            estimates.observe(record, system);
-            particles.observe(system);
-        },
-    )?;
+    let setup = ColorRunSetup { map, bank, params: params.clone(), start: None, seed: job.options.seed };
+    let mut run = color::run(&records, setup, |RunStep { system, record, .. }| {
+        estimates.observe(record, system);
+        particles.observe(system);
+    })?;
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::plots(&run)?;

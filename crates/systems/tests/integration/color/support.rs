@@ -15,7 +15,7 @@ use wayfix_scene_sim::{
     random::{RandomStreamPurpose, RandomStreams},
 };
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
-use wayfix_systems::color::{self, ColorSystemParams, StartPose, priors};
+use wayfix_systems::color::{self, ColorRunSetup, ColorSystemParams, StartPose, priors};
 
 /// Right: within 0.25 m and 6° of the truth.
 const NEAR_M: f64 = 0.25;
@@ -120,7 +120,8 @@ pub(crate) fn localize_with(
 ) -> Vec<Judged> {
     let params = ColorSystemParams::default();
     let bank = priors::bank(priors, &params).expect("a bank");
-    let run = color::run(records, Arc::new(map), bank, &params, start, 1, |_| {}).expect("images");
+    let setup = ColorRunSetup { map: Arc::new(map), bank, params, start, seed: 1 };
+    let run = color::run(records, setup, |_| {}).expect("images");
     let judge = |(frame, pose): &(&color::ColorFrameResult, wayfix_evaluation::errors::PoseWithTruth)| {
         let off: Vector3<f64> = pose.truth.local(&pose.estimate);
         let variances = frame.pose.covariance().diagonal();

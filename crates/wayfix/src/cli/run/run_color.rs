@@ -8,7 +8,8 @@ use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
 use wayfix_systems::color::{
-    self, ColorEstimateRecorder, ColorRun, ColorSystemParams, ParticleSnapshots, StartPose, priors,
+    self, ColorEstimateRecorder, ColorRun, ColorRunSetup, ColorSystemParams, ParticleSnapshots, StartPose,
+    priors,
 };
 
 use super::super::{
@@ -172,11 +173,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let color = color::run_streamed(
         &known,
         records()?,
-        map,
-        bank,
-        &params,
-        start,
-        arguments.common.seed,
+        ColorRunSetup { map, bank, params: params.clone(), start, seed: arguments.common.seed },
         |RunStep { system, record, stop, .. }| {
             if let Some(estimates) = &mut estimates {
                 estimates.observe(record, system);

@@ -7,8 +7,8 @@ use wayfix_evaluation::report::ReportRun;
 use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
 use wayfix_systems::cml::{
-    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlStartPose, CmlSystem, CmlTask,
-    PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
+    self, CameraViewGeometry, CmlEstimateRecorder, CmlParams, CmlRunPlan, CmlRunSetup, CmlStartPose,
+    CmlSystem, CmlTask, PanoramaMap, PeriodicMapSaver, ViewDescriptorReader,
 };
 use wayfix_table_log::{PoseTables, PosedFrameFolder};
 
@@ -61,21 +61,14 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     } else {
         Box::new(arguments.open()?.map(Cow::Owned))
     };
-    let run = cml::run_streamed(
-        system,
-        &plan,
-        records,
-        task,
-        start,
-        &params,
-        arguments.common.seed,
-        |RunStep { system, record, stop, .. }| {
-            estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
-            saver.iter_mut().for_each(|saver| saver.observe(record, system));
-            stop.set(interrupt::is_requested());
-            bar.inc(1);
-        },
-    );
+    let seed = arguments.common.seed;
+    let setup = CmlRunSetup { system, plan: &plan, task, start, params: &params, seed };
+    let run = cml::run_streamed(setup, records, |RunStep { system, record, stop, .. }| {
+        estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
+        saver.iter_mut().for_each(|saver| saver.observe(record, system));
+        stop.set(interrupt::is_requested());
+        bar.inc(1);
+    });
     bar.finish_and_clear();
     let mut run = run?;
     let warnings = add_read_problems(run.system.events(), &read);
