@@ -15,12 +15,17 @@ pub(crate) struct BufferedFrame {
 }
 
 impl BufferedFrame {
-    /// Angle between the views of two successive frames, rad: rotation of the camera, and translation as seen at a distance of 1 m.
+    /// Angle between the views of two successive frames, rad.
     pub(crate) fn view_change(&self, next: &Self) -> f64 {
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), next.odometry.increment.heading());
-        let rotation = self.mount.rotation.inverse() * turn * next.mount.rotation;
-        rotation.angle() + next.odometry.increment.translation.norm()
+        view_change(&self.mount, &next.odometry, &next.mount)
     }
+}
+
+/// Angle between the views of a camera at two mounts with this odometry between, rad: rotation of the camera, and translation as seen at a distance of 1 m.
+pub(crate) fn view_change(before: &Pose3<f64>, odometry: &OdometryDelta, after: &Pose3<f64>) -> f64 {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), odometry.increment.heading());
+    let rotation = before.rotation.inverse() * turn * after.rotation;
+    rotation.angle() + odometry.increment.translation.norm()
 }
 
 /// The last frames, for the global search.
@@ -34,11 +39,6 @@ impl FrameBuffer {
         while self.0.len() > capacity {
             self.0.pop_front();
         }
-    }
-
-    /// The newest frame.
-    pub(crate) fn newest(&self) -> Option<&BufferedFrame> {
-        self.0.back()
     }
 
     /// All frames, the newest last.

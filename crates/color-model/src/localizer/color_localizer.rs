@@ -9,11 +9,11 @@ use super::{
     FrameOutcome, LocalizationStatus, LocalizerParams, OdometryModel, OdometryNoise, OdometryStep,
     PoseEstimate, StartPosePrior,
     buffer::{BufferedFrame, FrameBuffer},
-    camera::CameraLocation,
+    camera::{CameraLocation, CameraPoseError},
     estimate::PLACE_RADIUS,
     filter::ColorFilter,
     frame::{PreparedFrame, Scene, check_frame},
-    odometry::OdometryDelta,
+    robot_camera::RobotCamera,
     search::{Area, check_area},
 };
 use crate::{
@@ -59,7 +59,8 @@ pub(super) const TRACKING_PROBABILITY: f64 = 0.95;
 /// ```
 pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLikelihoodParams> {
     map: Arc<ColorMap>,
-    pub(super) camera: PinholeCamera,
+    /// The first camera, and others.
+    pub(super) cameras: Vec<RobotCamera>,
     pub(super) area: Area,
     background: Option<BackgroundColorModel>,
     pub(super) params: LocalizerParams,
@@ -72,8 +73,6 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     /// The most probable place.
     present: ColorFilter<SunAndShade<T>>,
     relocalization: RelocalizationTest<ColorFilter<SunAndShade<T>>>,
-    /// Since the last frame.
-    pub(super) delta: OdometryDelta,
     buffer: FrameBuffer,
     /// The light of the most probable place before each frame of the buffer.
     pub(super) lights: VecDeque<Arc<SunAndShade<T>>>,
@@ -82,8 +81,14 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     pub(super) since_search: f64,
     /// Whether a search was certain of the present place: the last one of the start, or one later.
     is_confirmed: bool,
-    /// Log-likelihood ratios of the last frames to the background at the estimate, nats, and what each frame adds to the one before.
-    log_ratios: VecDeque<(f64, f64)>,
+}
+
+/// The tracked places after a frame.
+struct PlacesAfterFrame<T> {
+    present: ColorFilter<SunAndShade<T>>,
+    relocalization: RelocalizationTest<ColorFilter<SunAndShade<T>>>,
+    /// Share of the evidence of the frame that is independent of the frame before.
+    share: f64,
 }
 
 /// The models of a [`ColorLocalizer`].
@@ -149,7 +154,7 @@ where
             present: ColorFilter::new((0..params.max_particles).map(location), &prior)?,
             relocalization: RelocalizationTest::new(params.relocalization)?,
             map,
-            camera,
+            cameras: vec![RobotCamera::new(camera)],
             area,
             background: None,
             params,
@@ -157,13 +162,11 @@ where
             likelihood,
             start: start.clone(),
             prior,
-            delta: OdometryDelta::default(),
             buffer: FrameBuffer::default(),
             lights: VecDeque::new(),
             n_updates: 0,
             since_search: 0.0,
             is_confirmed: false,
-            log_ratios: VecDeque::new(),
         })
     }
 
@@ -178,9 +181,20 @@ where
         self.present.poses()
     }
 
-    /// The light of the heaviest particle.
+    /// Adds a camera that [`update_from`](Self::update_from) takes the frames of, and returns its number. It has a light of its own, since cameras differ in exposure
+    /// and white balance. The search for places uses the first camera alone.
+    pub fn add_camera(&mut self, camera: PinholeCamera) -> usize {
+        self.cameras.push(RobotCamera::new(camera));
+        self.cameras.len() - 1
+    }
+
+    /// The light of the heaviest particle, in the first camera.
     pub fn light(&self) -> &T {
-        &self.present.light().unwrap_or(&self.prior).sun
+        &self.light_in(0).sun
+    }
+
+    fn light_in(&self, camera: usize) -> &Arc<SunAndShade<T>> {
+        self.present.light(camera).unwrap_or(&self.prior)
     }
 
     /// Moves every particle by the odometry and its noise. The motions since the last frame add up.
@@ -209,11 +223,11 @@ where
                 body
             });
         }
-        self.delta.add(step, &self.odometry);
+        self.cameras.iter_mut().for_each(|camera| camera.delta.add(step, &self.odometry));
         Ok(())
     }
 
-    /// Learns from a frame; the joints report the camera at `mount` in the body frame. [Schulz & Fox 2004, IV]
+    /// Learns from a frame of the first camera; the joints report the camera at `mount` in the body frame. [Schulz & Fox 2004, IV]
     ///
     /// # Errors
     /// Returns an error if the image is not of the camera's size, the mount is not finite, or no particle explains the frame. The state is unchanged then.
@@ -223,47 +237,82 @@ where
         mount: &Pose3<f64>,
         rng: &mut R,
     ) -> Result<FrameOutcome, ColorModelError> {
-        check_frame(&self.camera, image, mount)?;
-        let scene = self.scene(&self.likelihood);
-        let frame = PreparedFrame::new(&scene, image, mount, &self.light().colors()?)?;
-        let light_before = self.present.light().unwrap_or(&self.prior).clone();
-        let mut present = self.present.clone();
-        self.step(&mut present, &frame, rng)?;
-
-        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry: self.delta };
-        let share =
-            self.buffer.newest().map_or(1.0, |last| self.independent_share(last.view_change(&newest)));
-        let mut relocalization = self.relocalization.clone();
-        let log_evidence = present.weighing.log_evidence;
-        self.test_alternatives(&mut relocalization, &frame, (share, log_evidence), rng)?;
+        let light_before = self.light_in(0).clone();
+        let PlacesAfterFrame { mut present, mut relocalization, share } =
+            self.weigh_places(0, image, mount, rng)?;
+        let odometry = self.cameras[0].delta;
+        let newest = BufferedFrame { image: image.clone(), mount: *mount, odometry };
         let mut buffer = self.buffer.clone();
         buffer.push(newest, self.params.search.n_buffered_frames);
         let is_certain = self.search_places(&buffer, &mut present, &mut relocalization, rng)?;
-        let has_moved = relocalization.decide(&mut present);
-        if has_moved {
-            present.set_max_particles(self.params.max_particles);
-        }
-        self.since_search = if is_certain.is_some() { 0.0 } else { self.since_search + self.delta.seconds };
+        self.since_search = if is_certain.is_some() { 0.0 } else { self.since_search + odometry.seconds };
         let is_start = self.n_updates < self.params.search.n_buffered_frames;
-        let confirmed = is_certain.filter(|is_certain| *is_certain || is_start);
-        self.is_confirmed = !has_moved && confirmed.unwrap_or(self.is_confirmed);
-        if has_moved && !is_start {
-            self.start = StartPosePrior::Anywhere;
+        if let Some(is_certain) = is_certain.filter(|is_certain| *is_certain || is_start) {
+            self.is_confirmed = is_certain;
         }
-        (self.present, self.relocalization, self.buffer) = (present, relocalization, buffer);
-        self.remember_frame(light_before, share);
+        self.choose_place(0, mount, PlacesAfterFrame { present, relocalization, share });
+        self.buffer = buffer;
+        self.n_updates += 1;
+        self.lights.push_back(light_before);
+        self.lights.drain(..self.lights.len().saturating_sub(self.params.search.n_buffered_frames));
         self.outcome()
     }
 
-    /// Counts the frame; keeps its light and its evidence for the map as long as the buffer keeps the frame.
-    fn remember_frame(&mut self, light_before: Arc<SunAndShade<T>>, share: f64) {
-        self.n_updates += 1;
-        self.delta = OdometryDelta::default();
-        self.log_ratios.push_back((self.present.weighing.mean_log_likelihood, share));
-        self.lights.push_back(light_before);
-        let n_old = self.log_ratios.len().saturating_sub(self.params.search.n_buffered_frames);
-        self.log_ratios.drain(..n_old);
-        self.lights.drain(..n_old);
+    /// [`update`](Self::update) from a frame of the camera of this number. A frame of an added camera weighs the places that are tracked; it starts no search.
+    ///
+    /// # Errors
+    /// As for [`update`](Self::update), or an error if there is no such camera.
+    pub fn update_from<R: Rng + ?Sized>(
+        &mut self,
+        camera: usize,
+        image: &YuvImage,
+        mount: &Pose3<f64>,
+        rng: &mut R,
+    ) -> Result<FrameOutcome, ColorModelError> {
+        if camera >= self.cameras.len() {
+            return Err(ColorModelError::OutOfRange { what: "number of a camera", value: camera as f64 });
+        }
+        if camera == 0 {
+            return self.update(image, mount, rng);
+        }
+        let places = self.weigh_places(camera, image, mount, rng)?;
+        self.choose_place(camera, mount, places);
+        self.outcome()
+    }
+
+    /// Weighs the particles of all places by a frame.
+    fn weigh_places<R: Rng + ?Sized>(
+        &self,
+        camera: usize,
+        image: &YuvImage,
+        mount: &Pose3<f64>,
+        rng: &mut R,
+    ) -> Result<PlacesAfterFrame<T>, ColorModelError> {
+        check_frame(&self.cameras[camera].model, image, mount)?;
+        let scene = self.scene(camera, &self.likelihood);
+        let frame = PreparedFrame::new(&scene, image, mount, &self.light_in(camera).sun.colors()?)?;
+        let (mut present, mut relocalization) = (self.present.clone(), self.relocalization.clone());
+        self.step(&mut present, &frame, rng)?;
+        let share = self.cameras[camera].independent_share(mount);
+        let log_evidence = present.weighing.log_evidence;
+        self.test_alternatives(&mut relocalization, &frame, (share, log_evidence), rng)?;
+        Ok(PlacesAfterFrame { present, relocalization, share })
+    }
+
+    /// The most probable place after a frame becomes the present one.
+    fn choose_place(&mut self, camera: usize, mount: &Pose3<f64>, places: PlacesAfterFrame<T>) {
+        let PlacesAfterFrame { mut present, mut relocalization, share } = places;
+        let n_frames = self.params.search.n_buffered_frames;
+        if relocalization.decide(&mut present) {
+            present.set_max_particles(self.params.max_particles);
+            self.is_confirmed = false;
+            if self.n_updates >= n_frames {
+                self.start = StartPosePrior::Anywhere;
+            }
+        }
+        (self.present, self.relocalization) = (present, relocalization);
+        let log_ratio = self.present.weighing.mean_log_likelihood;
+        self.cameras[camera].remember(mount, (log_ratio, share), n_frames);
     }
 
     /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
@@ -273,25 +322,21 @@ where
         frame: &PreparedFrame<'_, L>,
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
-        let seconds = self.delta.seconds;
+        let seconds = self.cameras[frame.camera()].delta.seconds;
+        filter.exchange_camera(frame.camera(), &self.prior, || self.params.camera_pose_noise.sample(rng));
         filter.predict_lighting(seconds)?; // Eq. 6
         filter.weigh(frame, seconds, &self.params, rng)?; // Eqs. 14–16
         let ancestors = filter.resample(rng)?;
-        filter.update_lighting(&ancestors, &self.params) // Eqs. 3–5
+        filter.update_lighting(&ancestors, &self.params)?; // Eqs. 3–5
+        filter.exchange_camera(frame.camera(), &self.prior, CameraPoseError::default);
+        Ok(())
     }
 
-    /// Share of the evidence of a frame that is independent of the frame before, from which the view has turned by `angle`: what is not on the map, as another robot,
-    /// stays in view until the camera has turned by its field of view, and is one error until then.
-    fn independent_share(&self, angle: f64) -> f64 {
-        let half = f64::from(self.camera.height()) / 2.0;
-        let field_of_view = 2.0 * (half / self.camera.fy()).atan();
-        (angle / field_of_view).min(1.0)
-    }
-
-    pub(super) fn scene<'a, K>(&'a self, likelihood: &'a K) -> Scene<'a, K> {
+    pub(super) fn scene<'a, K>(&'a self, camera: usize, likelihood: &'a K) -> Scene<'a, K> {
         Scene {
             map: &self.map,
-            camera: self.camera,
+            camera: self.cameras[camera].model,
+            camera_number: camera,
             pixels: &self.params.pixels,
             likelihood,
             background: self.background.as_ref(),
@@ -308,12 +353,13 @@ where
         let params = &self.params.search;
         // At even odds, the frames support the map at the estimate, one of all places, as much as the background.
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
-        let mean =
-            self.log_ratios.iter().map(|(log, _)| log).sum::<f64>() / self.log_ratios.len().max(1) as f64;
-        let n_independent = self.log_ratios.iter().map(|(_, share)| share).sum::<f64>().max(1.0);
-        let is_explained = n_independent * mean > odds.ln();
-        let is_confirmed =
-            self.is_confirmed || params.samples_per_place == 0.0 || self.params.relocalization.is_off();
+        let is_seeing = |camera: &&RobotCamera| camera.delta.seconds <= params.search_interval;
+        let support: f64 = self.cameras.iter().filter(is_seeing).map(RobotCamera::log_support).sum();
+        let is_explained = support > odds.ln();
+        let is_searching = self.cameras.first().is_some_and(|first| is_seeing(&first));
+        let is_confirmed = is_searching && self.is_confirmed
+            || params.samples_per_place == 0.0
+            || self.params.relocalization.is_off();
         let status = match (self.n_updates >= params.n_buffered_frames, is_explained) {
             (true, false) => LocalizationStatus::Lost,
             (true, true) if share > TRACKING_PROBABILITY && is_narrow && is_confirmed => {

@@ -22,6 +22,8 @@ use crate::{
 #[derive(Clone)]
 pub(crate) struct ColorParticle<T> {
     pub(crate) state: RaoBlackwellParticle<CameraLocation, T>,
+    /// The error of the mount and the light of each camera beside the first.
+    others: Vec<(CameraPoseError, Arc<T>)>,
     /// Of every colour in the first light, then in the next. Lights that the frame does not show have none.
     sums: Vec<PixelSums>,
     /// The light drawn.
@@ -37,6 +39,8 @@ pub(crate) struct ColorFilter<T> {
     weights: NormalizedWeights,
     /// Probability that the view is hidden.
     hidden: f64,
+    /// The same of each camera beside the first.
+    others_hidden: Vec<f64>,
     max_particles: usize,
     /// Result of the last frame.
     pub(crate) weighing: Weighing,
@@ -64,6 +68,7 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
     ) -> Result<Self, ColorModelError> {
         let particle = |location| ColorParticle {
             state: RaoBlackwellParticle::from_shared(location, Arc::clone(light)),
+            others: Vec::new(),
             sums: Vec::new(),
             light: 0,
             log_likelihood: 0.0,
@@ -77,7 +82,27 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
             effective_particles: particles.len() as f64,
             light_probabilities: (0..light.n_lights()).map(|at| light.light_probability(at)).collect(),
         };
-        Ok(Self { max_particles: particles.len(), particles, weights, hidden: 0.0, weighing })
+        let (hidden, others_hidden) = (0.0, Vec::new());
+        Ok(Self { max_particles: particles.len(), particles, weights, hidden, others_hidden, weighing })
+    }
+
+    /// Looks through the camera of this number, or after that through the first again. A new camera has this light and an error of its mount by `sample`.
+    pub(crate) fn exchange_camera(
+        &mut self,
+        camera: usize,
+        light: &Arc<T>,
+        mut sample: impl FnMut() -> CameraPoseError,
+    ) {
+        let Some(at) = camera.checked_sub(1) else { return };
+        self.others_hidden.resize(camera.max(self.others_hidden.len()), 0.0);
+        std::mem::swap(&mut self.hidden, &mut self.others_hidden[at]);
+        for ColorParticle { state, others, .. } in &mut self.particles {
+            others.resize_with(camera.max(others.len()), || (sample(), Arc::clone(light)));
+            let (error, light) = &mut others[at];
+            std::mem::swap(&mut state.sampled.error, error);
+            let first = Arc::clone(state.shared_conditional());
+            state.set_conditional(std::mem::replace(light, first));
+        }
     }
 
     /// Moves each particle. [Schulz & Fox 2004, Eqs. 13, 15]
@@ -209,10 +234,14 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         bodies.zip(self.weights.as_slice().iter().copied())
     }
 
-    /// Light of the heaviest particle.
-    pub(crate) fn light(&self) -> Option<&Arc<T>> {
+    /// Light of the heaviest particle in the camera of this number.
+    pub(crate) fn light(&self, camera: usize) -> Option<&Arc<T>> {
         let weighted = self.particles.iter().zip(self.weights.as_slice());
-        weighted.max_by(|a, b| a.1.total_cmp(b.1)).map(|(particle, _)| particle.state.shared_conditional())
+        let (heaviest, _) = weighted.max_by(|a, b| a.1.total_cmp(b.1))?;
+        match camera.checked_sub(1) {
+            None => Some(heaviest.state.shared_conditional()),
+            Some(other) => heaviest.others.get(other).map(|(_, light)| light),
+        }
     }
 
     pub(crate) fn set_max_particles(&mut self, max_particles: usize) {

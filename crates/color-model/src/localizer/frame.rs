@@ -14,6 +14,8 @@ use crate::{
 pub(crate) struct Scene<'a, L> {
     pub(crate) map: &'a Arc<ColorMap>,
     pub(crate) camera: PinholeCamera,
+    /// 0 for the first camera.
+    pub(crate) camera_number: usize,
     pub(crate) pixels: &'a PixelLikelihoodParams,
     pub(crate) likelihood: &'a L,
     pub(crate) background: Option<&'a BackgroundColorModel>,
@@ -77,6 +79,11 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
         };
         let frame = likelihood.frame(&context)?;
         Ok(Self { scene, mount, image: tiled, frame })
+    }
+
+    /// Number of its camera.
+    pub(crate) fn camera(&self) -> usize {
+        self.scene.camera_number
     }
 
     pub(crate) fn n_colors(&self) -> usize {

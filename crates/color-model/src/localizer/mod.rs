@@ -11,6 +11,7 @@ mod odometry;
 mod outcome;
 mod params;
 mod places;
+mod robot_camera;
 mod search;
 
 pub use camera::{CameraLocation, CameraPoseError, CameraPoseNoise};

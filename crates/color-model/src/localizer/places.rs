@@ -59,7 +59,7 @@ where
         let params = &self.params.search;
         let n_frames = self.n_updates + 1;
         let is_start = n_frames <= params.n_buffered_frames;
-        let is_late = self.since_search + self.delta.seconds >= params.search_interval;
+        let is_late = self.since_search + self.cameras[0].delta.seconds >= params.search_interval;
         let is_due = if is_start { n_frames.is_power_of_two() } else { is_late };
         let is_on = !self.params.relocalization.is_off();
         if params.samples_per_place == 0.0 || !is_due || !(is_start || is_on) {
@@ -96,11 +96,11 @@ where
         let start = if is_start { &self.start } else { &StartPosePrior::Anywhere };
         let frames = buffer.frames();
         // Once the view has turned by a tile, its tiles show something else.
-        let tile = f64::from(self.params.pixels.tile_pixels) / self.camera.fx();
+        let tile = f64::from(self.params.pixels.tile_pixels) / self.cameras[0].model.fx();
         let shares = frames.windows(2).map(|pair| (pair[0].view_change(&pair[1]) / tile).min(1.0));
         let shares = std::iter::once(1.0).chain(shares).collect();
         let lights = [&self.prior, self.lights.front().unwrap_or(&self.prior)];
-        Search::new(self.scene(&()), (&self.area, start), &self.params, lights, (frames, shares))
+        Search::new(self.scene(0, &()), (&self.area, start), &self.params, lights, (frames, shares))
     }
 
     /// The best place by all frames becomes the present one, and the others its alternatives.

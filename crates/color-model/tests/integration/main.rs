@@ -8,3 +8,4 @@ mod prior;
 mod span_likelihood;
 mod support;
 mod switched_light;
+mod two_cameras;

@@ -2,6 +2,7 @@
 //!
 //! [`run`] passes the records of a log through a [`ColorSystem`] with a map and priors; [`summarize`] gives the figures, [`plots`] the pictures.
 
+mod camera;
 mod estimates;
 mod figures;
 mod labels;
@@ -14,6 +15,7 @@ mod run;
 mod system;
 mod totals;
 
+pub use camera::RecordIterator;
 pub use estimates::{ColorDrawingState, ColorEstimateRecorder};
 pub use figures::summarize;
 pub use labels::{ClassificationCounts, rate_of, tally};

@@ -15,7 +15,9 @@ use wayfix_system_core::{
     warn_of_no_overlap, warn_of_start, without_odometry_delay,
 };
 
-use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose, totals::ColorTotals};
+use super::{
+    ColorFrameResult, ColorSystem, ColorSystemParams, RecordIterator, StartPose, totals::ColorTotals,
+};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
@@ -51,17 +53,18 @@ pub fn run(
     observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
     let in_time = without_odometry_delay(records, setup.params.odometry_delay);
-    run_streamed(records, in_time.iter(), setup, observe)
+    run_streamed(records, in_time.iter(), None, setup, observe)
 }
 
 /// As [`run`], with the records one by one: a long log need not be kept. `overview` is the same log, whose images may be empty; a delay of odometry was
-/// taken out of `records` already.
+/// taken out of `records` already. A second camera of the robot, if there is one, has a log of its own, on the same clock.
 ///
 /// # Errors
 /// Returns the errors of [`run`].
 pub fn run_streamed<R: Borrow<Record>>(
     overview: &[Record],
     records: impl IntoIterator<Item = R>,
+    second_camera: Option<RecordIterator>,
     setup: ColorRunSetup,
     mut observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
@@ -77,6 +80,9 @@ pub fn run_streamed<R: Borrow<Record>>(
         None => StartPose::Anywhere,
     });
     let mut system = ColorSystem::new(map, bank, params, start, seed);
+    if let Some(records) = second_camera {
+        system = system.with_second_camera(records);
+    }
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }

@@ -1,22 +1,27 @@
 use std::{sync::Arc, time::Duration};
 
+use anyhow::{bail, ensure};
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_color_map::{ColorMap, PinholeCamera};
+use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    ColorDensity, ColorLocalizer, ColorLocalizerModels, ColorLookUpTable, ImageLikelihoodChoice,
-    LightingFilterBank, LocalizationStatus, OdometryNoise, OdometryStep, PixelClassifier, StartPosePrior,
-    YuvImage,
+    ColorDensity, ColorLocalizer, ColorLocalizerModels, ColorLookUpTable, FrameOutcome,
+    ImageLikelihoodChoice, LightingFilterBank, LocalizationStatus, OdometryNoise, OdometryStep,
+    PixelClassifier, StartPosePrior, YuvImage,
 };
-use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_system_core::{
     EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, Stopwatch, System, VELOCITY_TIMEOUT,
 };
 
-use super::{ClassificationCounts, ColorSystemParams, tally};
+use super::{
+    ClassificationCounts, ColorSystemParams,
+    camera::{LoggedCamera, PlacedImage, RecordIterator, SecondCamera, pinhole},
+    tally,
+};
 
 /// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,12 +39,11 @@ pub struct ColorSystem {
     params: ColorSystemParams,
     start: StartPose,
     rng: ChaCha8Rng,
-    camera: Option<CameraInfo>,
-    mount: Option<Pose3<f64>>,
+    camera: LoggedCamera,
+    second_camera: Option<SecondCamera>,
     labels: Option<(Stamp, EncodedImage)>,
     localizer: Option<Localizer>,
     pending: Pending,
-    last_image: Option<LastImage>,
     odometry: LoggedOdometry,
     dead_reckoning: Option<Pose2<f64>>,
     frames: Decimated<ColorFrameResult>,
@@ -57,10 +61,19 @@ struct Pending {
     since: Option<Stamp>,
 }
 
-/// An image that differs from the one before, and the motion since.
-struct LastImage {
-    image: EncodedImage,
-    moved: Pose2<f64>,
+impl Pending {
+    /// The measured motion until an image, then the time without one. It counts as predicted, whether or not the image is usable.
+    fn steps_until(&mut self, stamp: Stamp) -> impl Iterator<Item = OdometryStep> + use<> {
+        let next = Self { since: Some(stamp), ..Self::default() };
+        let Self { increment, unknown_seconds, since } = std::mem::replace(self, next);
+        let steps = since.map(|since| {
+            let seconds = (stamp.seconds_since(since) - unknown_seconds).max(0.0);
+            let unknown = OdometryStep { increment: None, seconds: unknown_seconds };
+            let unknown = (unknown_seconds > 0.0).then_some(unknown);
+            std::iter::once(OdometryStep { increment, seconds }).chain(unknown)
+        });
+        steps.into_iter().flatten()
+    }
 }
 
 /// Result of one frame.
@@ -114,12 +127,11 @@ impl ColorSystem {
             params,
             start,
             rng: ChaCha8Rng::seed_from_u64(seed),
-            camera: None,
-            mount: None,
+            camera: LoggedCamera::default(),
+            second_camera: None,
             labels: None,
             localizer: None,
             pending: Pending::default(),
-            last_image: None,
             odometry: LoggedOdometry::new(VELOCITY_TIMEOUT),
             dead_reckoning,
             frames: Decimated::new(MOST_ESTIMATES),
@@ -127,6 +139,12 @@ impl ColorSystem {
             table: None,
             events: EventCounts::default(),
         }
+    }
+
+    /// Takes images of a second camera from these records, in the order of time: they correct the pose between the results, which are those of the first camera.
+    #[must_use]
+    pub fn with_second_camera(self, records: RecordIterator) -> Self {
+        Self { second_camera: Some(SecondCamera::new(records)), ..self }
     }
 
     /// Results of the frames so far, evenly spaced: all of a short log, at most [`MOST_ESTIMATES`] of a long one.
@@ -192,8 +210,9 @@ impl ColorSystem {
         let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
         self.pending.increment = Some(so_far.compose(&motion.increment));
         self.pending.unknown_seconds += motion.unknown_seconds;
-        if let Some(LastImage { moved, .. }) = &mut self.last_image {
-            *moved = moved.compose(&motion.increment);
+        self.camera.move_by(&motion.increment);
+        if let Some(second) = &mut self.second_camera {
+            second.camera.move_by(&motion.increment);
         }
         if self.pending.since.is_some() {
             // The start is the pose at the first image.
@@ -201,35 +220,10 @@ impl ColorSystem {
         }
     }
 
-    /// Refuses an image that repeats the last one although the robot has turned by more than a pixel, or moved as far as turns a view at 1 m so.
-    fn check_is_new(&mut self, image: &EncodedImage, pixels: &[u8], fx: f64) -> Result<(), String> {
-        let Some(LastImage { moved, .. }) = self.last_image.as_ref().filter(|last| last.image == *image)
-        else {
-            self.last_image = Some(LastImage { image: image.clone(), moved: Pose2::identity() });
-            return Ok(());
-        };
-        let shift = (moved.translation.norm() + moved.heading().abs()) * fx;
-        // A covered camera, or one without light, sees the same everywhere.
-        let is_blank = pixels.iter().max().zip(pixels.iter().min()).is_none_or(|(most, least)| most == least);
-        if shift > 1.0 && !is_blank {
-            return Err(format!(
-                "the image repeats the one before, although odometry has moved it by some {shift:.0} pixels: the camera hangs"
-            ));
-        }
-        Ok(())
-    }
-
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
-        let info = self.camera.ok_or("no camera info before this image")?;
-        let mount = self.mount.ok_or("no camera mount before this image")?;
-        let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
-        self.check_is_new(image, &decoded.pixels, info.fx)?;
-        let image =
-            YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, self.params.yuv_standard)
-                .map_err(|error| error.to_string())?;
-
+        let placed = self.camera.see(image, &self.params)?;
         let stopwatch = Stopwatch::start();
-        let outcome = self.localize(stamp, info, &mount, &image).map_err(|error| error.to_string())?;
+        let outcome = self.localize(stamp, &placed).map_err(|error| error.to_string())?;
         let step = stopwatch.elapsed();
 
         self.events.count(match outcome.status {
@@ -238,7 +232,7 @@ impl ColorSystem {
             LocalizationStatus::Lost => "lost",
         });
 
-        let labelled = self.labelled(stamp, &image);
+        let labelled = self.labelled(stamp, &placed.image);
         let result = ColorFrameResult {
             stamp,
             pose: outcome.estimate.pose,
@@ -255,18 +249,19 @@ impl ColorSystem {
         Ok(())
     }
 
-    fn localize(
-        &mut self,
-        stamp: Stamp,
-        info: CameraInfo,
-        mount: &Pose3<f64>,
-        image: &YuvImage,
-    ) -> anyhow::Result<wayfix_color_model::FrameOutcome> {
+    /// Applies the velocities that hold until an image.
+    fn move_until(&mut self, stamp: Stamp) {
+        let held = self.odometry.advance_to(stamp, &mut self.events);
+        held.iter().for_each(|motion| self.move_by(motion));
+    }
+
+    fn localize(&mut self, stamp: Stamp, placed: &PlacedImage) -> anyhow::Result<FrameOutcome> {
+        let PlacedImage { camera, mount, image } = placed;
         let localizer = match &mut self.localizer {
             Some(localizer) => localizer,
             none => none.insert(ColorLocalizer::with_models(
                 Arc::clone(&self.map),
-                PinholeCamera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
+                pinhole(camera)?,
                 ColorLocalizerModels {
                     light: self.bank.clone(),
                     odometry: self.params.localizer.odometry,
@@ -277,21 +272,42 @@ impl ColorSystem {
                 &mut self.rng,
             )?),
         };
-        if let Some(since) = self.pending.since {
-            let Pending { increment, unknown_seconds, .. } = self.pending;
-            let seconds = stamp.seconds_since(since);
-            localizer.predict(
-                &OdometryStep { increment, seconds: (seconds - unknown_seconds).max(0.0) },
-                &mut self.rng,
-            )?;
-            if unknown_seconds > 0.0 {
-                let unknown = OdometryStep { increment: None, seconds: unknown_seconds };
-                localizer.predict(&unknown, &mut self.rng)?;
+        for step in self.pending.steps_until(stamp) {
+            localizer.predict(&step, &mut self.rng)?;
+        }
+        Ok(localizer.update(image, mount, &mut self.rng)?)
+    }
+
+    /// Takes the images of the second camera before this time, from the first image of the first camera on.
+    fn look_through_second_camera(&mut self, before: Stamp) {
+        let next = |system: &mut Self| system.second_camera.as_mut()?.next_image_before(before);
+        while let Some((stamp, image)) = next(self) {
+            self.move_until(stamp);
+            match self.see_second(stamp, &image) {
+                Ok(()) => self.events.count("second_camera_image"),
+                Err(reason) => {
+                    self.events.refuse("record_refused", format!("second camera, {stamp}: {reason}"));
+                }
             }
         }
-        // The motion is already predicted, whether or not the image is usable.
-        self.pending = Pending { since: Some(stamp), ..Pending::default() };
-        Ok(localizer.update(image, mount, &mut self.rng)?)
+    }
+
+    fn see_second(&mut self, stamp: Stamp, image: &EncodedImage) -> anyhow::Result<()> {
+        let (Some(since), Some(localizer)) = (self.pending.since, &mut self.localizer) else {
+            bail!("no usable image of the first camera before this one");
+        };
+        ensure!(stamp >= since, "time goes back by {:.9} s", since.seconds_since(stamp));
+        let Some(second) = &mut self.second_camera else { return Ok(()) };
+        let placed = second.camera.see(image, &self.params).map_err(anyhow::Error::msg)?;
+        let number = match second.number {
+            Some(number) => number,
+            None => *second.number.insert(localizer.add_camera(pinhole(&placed.camera)?)),
+        };
+        for step in self.pending.steps_until(stamp) {
+            localizer.predict(&step, &mut self.rng)?;
+        }
+        localizer.update_from(number, &placed.image, &placed.mount, &mut self.rng)?;
+        Ok(())
     }
 
     fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<ClassificationCounts> {
@@ -311,19 +327,27 @@ fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<StartPo
 
 impl System for ColorSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
+        self.look_through_second_camera(record.stamp);
         match &record.data {
-            RecordData::CameraInfo(info) => self.camera = Some(*info),
-            RecordData::CameraMount(mount) => self.mount = Some(*mount),
+            data @ (RecordData::CameraInfo(_) | RecordData::CameraMount(_)) => self.camera.take(data),
             RecordData::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
             RecordData::Image(image) => {
-                let held = self.odometry.advance_to(record.stamp, &mut self.events);
-                held.iter().for_each(|motion| self.move_by(motion));
+                self.move_until(record.stamp);
                 self.see(record.stamp, image)?;
             }
             _ => {
                 let motion = self.odometry.take(record, &mut self.events)?;
                 motion.iter().for_each(|motion| self.move_by(motion));
             }
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), String> {
+        if self.second_camera.is_some() && self.events.get("second_camera_image") == 0 {
+            let text =
+                "no image of the second camera was used: all were refused, or none is of the time of the log";
+            self.events.warn("second_camera_unused", text);
         }
         Ok(())
     }

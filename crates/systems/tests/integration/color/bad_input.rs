@@ -7,7 +7,10 @@ use wayfix_scene_sim::league::{
 };
 use wayfix_sensor_log::{Record, RecordData};
 
-use super::support::{Judged, drive, hall, localize, n_wrongly_tracked, sunny_hall, table};
+use super::support::{
+    CameraOnHead, Judged, drive, drive_with_cameras, hall, localize, localize_with_second_camera,
+    n_wrongly_tracked, sunny_hall, table,
+};
 
 /// Two seconds of trouble, at 10 frames a second: more than the 16 frames that a search uses.
 const DISTURBED: Range<usize> = 20..40;
@@ -104,18 +107,36 @@ fn ball_that_fills_the_image() {
     check_blind("ball", &localize(&walk(&venue, [&venue.bright; 2], ball)));
 }
 
-#[test]
-fn camera_that_stops_and_returns() {
-    // Of two cameras a log's reader takes the one with the most images: if that one stops, there are none.
-    let venue = hall(6);
-    let mut records = walk(&venue, [&venue.bright; 2], |_, _| {});
+/// Takes the images of these frames out of a log.
+fn without_images(mut records: Vec<Record>, frames: &Range<usize>) -> Vec<Record> {
     let mut n_images = 0;
     records.retain(|record| {
         let is_image = matches!(record.data, RecordData::Image(_));
         n_images += usize::from(is_image);
-        !(is_image && DISTURBED.contains(&(n_images - 1)))
+        !(is_image && frames.contains(&(n_images - 1)))
     });
-    check("camera stops", &localize(&records));
+    records
+}
+
+#[test]
+fn camera_that_stops_and_returns() {
+    let venue = hall(6);
+    let records = walk(&venue, [&venue.bright; 2], |_, _| {});
+    check("camera stops", &localize(&without_images(records, &DISTURBED)));
+}
+
+#[test]
+fn either_of_two_cameras_stops_and_returns() {
+    let venue = hall(6);
+    let behind = CameraOnHead { pan: std::f64::consts::PI, gain: 0.7 };
+    let light = |_| -> Box<dyn LightField> { Box::new(venue.bright.clone()) };
+    let cameras = [CameraOnHead::default(), behind];
+    let logs = drive_with_cameras(&venue, N_FRAMES, LeggedRobotParams::default(), light, |_, _| {}, cameras);
+    let [first, second] = logs;
+    let later = DISTURBED.end + 20..DISTURBED.end + 40;
+    let frames =
+        localize_with_second_camera(&without_images(first, &DISTURBED), without_images(second, &later));
+    check("either camera stops", &frames);
 }
 
 /// Veiling glare that falls off from a corner, and ghosts of the aperture on a line through the middle.

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{LightingPriors, LocalizationStatus};
-use wayfix_estimation_traits::Manifold;
+use wayfix_estimation_traits::{Manifold, Pose3};
 use wayfix_scene_sim::{
     league::{
         CameraSimulator, LeaguePicture, LeagueScene, LeagueVenue, LeggedRobot, LeggedRobotParams, LightField,
@@ -15,7 +15,9 @@ use wayfix_scene_sim::{
     random::{RandomStreamPurpose, RandomStreams},
 };
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
-use wayfix_systems::color::{self, ColorRunSetup, ColorSystemParams, StartPose, priors};
+use wayfix_systems::color::{
+    self, ColorRun, ColorRunSetup, ColorSystemParams, RecordIterator, StartPose, priors,
+};
 
 /// Right: within 0.25 m and 6° of the truth.
 const NEAR_M: f64 = 0.25;
@@ -41,45 +43,74 @@ pub(crate) fn drive(
     light: impl Fn(usize) -> Box<dyn LightField>,
     spoil: impl Fn(usize, &mut LeaguePicture),
 ) -> Vec<Record> {
+    let [records] = drive_with_cameras(venue, n_frames, robot, light, spoil, [CameraOnHead::default()]);
+    records
+}
+
+/// A camera on the head of the robot.
+#[derive(Clone, Copy)]
+pub(crate) struct CameraOnHead {
+    /// Its pan to the left of the head's direction, rad.
+    pub(crate) pan: f64,
+    /// Its exposure relative to that of the venue.
+    pub(crate) gain: f64,
+}
+
+impl Default for CameraOnHead {
+    fn default() -> Self {
+        Self { pan: 0.0, gain: 1.0 }
+    }
+}
+
+/// [`drive`] with several cameras: a log for each, the first with odometry and truth.
+pub(crate) fn drive_with_cameras<const N: usize>(
+    venue: &LeagueVenue,
+    n_frames: usize,
+    robot: LeggedRobotParams,
+    light: impl Fn(usize) -> Box<dyn LightField>,
+    spoil: impl Fn(usize, &mut LeaguePicture),
+    cameras: [CameraOnHead; N],
+) -> [Vec<Record>; N] {
     let mut streams = RandomStreams::new(ChaCha8Rng::seed_from_u64(7));
     let mut robot = LeggedRobot::new(robot, None, landmarks(), &mut streams).expect("a robot");
-    let mut camera = CameraSimulator::new(venue.camera).expect("a camera");
+    let mut simulator = CameraSimulator::new(venue.camera).expect("a camera");
     let things = UnmappedObjects::draw(streams.of(RandomStreamPurpose::UnmappedObjects));
     let map = SceneSurface::of_map(&field_map().expect("a constant map"));
     let pinhole = venue.camera.camera;
-    let mut records = vec![at(
-        0,
-        RecordData::CameraInfo(CameraInfo {
-            width: pinhole.width(),
-            height: pinhole.height(),
-            fx: pinhole.fx(),
-            fy: pinhole.fy(),
-            cx: pinhole.cx(),
-            cy: pinhole.cy(),
-        }),
-    )];
+    let info = RecordData::CameraInfo(CameraInfo {
+        width: pinhole.width(),
+        height: pinhole.height(),
+        fx: pinhole.fx(),
+        fy: pinhole.fy(),
+        cx: pinhole.cx(),
+        cy: pinhole.cy(),
+    });
+    let mut logs = cameras.map(|_| vec![at(0, info.clone())]);
     for frame in 0..n_frames {
         (0..100).for_each(|_| robot.step(&mut streams));
         let (pose, moved) = (robot.pose(), robot.odometry(0.1, &mut streams));
+        if let Some(first) = logs.first_mut() {
+            first.push(at(frame + 1, RecordData::OdometryIncrement(moved)));
+            first.push(at(frame + 1, RecordData::TruePose(pose)));
+        }
         let mut surfaces = map.clone();
         surfaces.extend(things.surfaces(0.1 * frame as f64, &pose));
         let light = light(frame);
         let scene =
             LeagueScene { surfaces, paints: &venue.paints, light: light.as_ref(), backdrop: &venue.hall };
-        let rng = streams.of(RandomStreamPurpose::Picture);
-        let eye = robot.camera_pose();
-        let mut picture = camera.take(&scene, [&eye, &eye], &LinearRgb::repeat(1.0), rng);
-        spoil(frame, &mut picture);
-        let jpeg = EncodedImage::jpeg(picture.width, picture.height, &picture.rgb, 88).expect("an image");
-        let of_frame = [
-            RecordData::TruePose(pose),
-            RecordData::CameraMount(robot.reported_mount()),
-            RecordData::Image(jpeg),
-        ];
-        records.push(at(frame + 1, RecordData::OdometryIncrement(moved)));
-        records.extend(of_frame.map(|data| at(frame + 1, data)));
+        for (CameraOnHead { pan, gain }, records) in cameras.iter().zip(&mut logs) {
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *pan);
+            let panned = |pose: Pose3<f64>| Pose3 { rotation: pose.rotation * turn, ..pose };
+            let eye = panned(robot.camera_pose());
+            let rng = streams.of(RandomStreamPurpose::Picture);
+            let mut picture = simulator.take(&scene, [&eye, &eye], &LinearRgb::repeat(*gain), rng);
+            spoil(frame, &mut picture);
+            let jpeg = EncodedImage::jpeg(picture.width, picture.height, &picture.rgb, 88).expect("an image");
+            let mount = RecordData::CameraMount(panned(robot.reported_mount()));
+            records.extend([mount, RecordData::Image(jpeg)].map(|data| at(frame + 1, data)));
+        }
     }
-    records
+    logs
 }
 
 fn at(tenths: usize, data: RecordData) -> Record {
@@ -118,10 +149,26 @@ pub(crate) fn localize_with(
     priors: &LightingPriors,
     start: Option<StartPose>,
 ) -> Vec<Judged> {
+    let run = color::run(records, setup(map, priors, start), |_| {}).expect("images");
+    judged(&run)
+}
+
+/// [`localize`] with a second camera.
+pub(crate) fn localize_with_second_camera(records: &[Record], second: Vec<Record>) -> Vec<Judged> {
+    let map = field_map().expect("a constant map");
+    let setup = setup(map, &priors::built_in().expect("priors"), None);
+    let second: Option<RecordIterator> = Some(Box::new(second.into_iter()));
+    let run = color::run_streamed(records, records.iter(), second, setup, |_| {}).expect("images");
+    judged(&run)
+}
+
+fn setup(map: ColorMap, priors: &LightingPriors, start: Option<StartPose>) -> ColorRunSetup {
     let params = ColorSystemParams::default();
     let bank = priors::bank(priors, &params).expect("a bank");
-    let setup = ColorRunSetup { map: Arc::new(map), bank, params, start, seed: 1 };
-    let run = color::run(records, setup, |_| {}).expect("images");
+    ColorRunSetup { map: Arc::new(map), bank, params, start, seed: 1 }
+}
+
+fn judged(run: &ColorRun) -> Vec<Judged> {
     let judge = |(frame, pose): &(&color::ColorFrameResult, wayfix_evaluation::errors::PoseWithTruth)| {
         let off: Vector3<f64> = pose.truth.local(&pose.estimate);
         let variances = frame.pose.covariance().diagonal();

@@ -8,8 +8,8 @@ use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_sensor_log::{LogOpenOptions, Record};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
 use wayfix_systems::color::{
-    self, ColorEstimateRecorder, ColorRun, ColorRunSetup, ColorSystemParams, ParticleSnapshots, StartPose,
-    priors,
+    self, ColorEstimateRecorder, ColorRun, ColorRunSetup, ColorSystemParams, ParticleSnapshots,
+    RecordIterator, StartPose, priors,
 };
 
 use super::super::{
@@ -42,6 +42,14 @@ pub(in crate::cli) struct Arguments {
     log: Vec<PathBuf>,
     #[command(flatten)]
     topics: Topics,
+    /// A log of a second camera of the robot: its images, calibration and mount, on the same clock; it may be the same bag with `--second-topic`.
+    ///
+    /// Its images correct the pose; the search for an unknown place uses the first camera alone. Colours and light are estimated for each camera.
+    #[arg(long, value_name = "PATH")]
+    second_camera: Vec<PathBuf>,
+    /// The topic of the second camera's images in a ROS 2 bag.
+    #[arg(long, value_name = "NAME", requires = "second_camera")]
+    second_topic: Option<String>,
     #[command(flatten)]
     truth: TruthFile,
     /// The map: coloured polygons and posts, TOML or JSON.
@@ -69,6 +77,7 @@ const EXAMPLES: &str = "\
 Examples:
   wayfix run color --log fixtures/color_dark.mcap --map fixtures/four-legged-field.toml
   wayfix run color --log my.mcap --map my-field.toml --start anywhere --out results
+  wayfix run color --log nao --topic /top/image --second-camera nao --second-topic /bottom/image --map my-field.toml
   wayfix run color --print-params > my.toml
   wayfix run color --write-priors priors.json";
 
@@ -164,6 +173,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         })
     };
 
+    let second_camera = second_camera(&arguments.second_camera, arguments.second_topic)?;
+
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateRecorder> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
@@ -173,6 +184,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let color = color::run_streamed(
         &known,
         records()?,
+        second_camera,
         ColorRunSetup { map, bank, params: params.clone(), start, seed: arguments.common.seed },
         |RunStep { system, record, stop, .. }| {
             if let Some(estimates) = &mut estimates {
@@ -195,6 +207,17 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     outputs.show(run, || plots(&mut color, n_images, records()?, &particles))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Opens the log of a second camera; prints its read problems and assumptions.
+fn second_camera(log: &[PathBuf], topic: Option<String>) -> Result<Option<RecordIterator>> {
+    if log.is_empty() {
+        return Ok(None);
+    }
+    let options = LogOpenOptions { topics: topic.into_iter().collect(), ..LogOpenOptions::default() };
+    let open = || wayfix_sensor_log::open_all(log, &options);
+    read_overview(open, 0).context("cannot read the log of the second camera")?;
+    Ok(Some(Box::new(open()?)))
 }
 
 /// Frames of the film strip.
