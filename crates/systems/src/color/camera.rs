@@ -44,6 +44,11 @@ impl LoggedCamera {
         }
     }
 
+    /// Whether this is its last image.
+    pub(super) fn has_seen(&self, image: &EncodedImage) -> bool {
+        self.last.as_ref().is_some_and(|last| last.image == *image)
+    }
+
     /// Decodes an image. Refuses one without calibration or mount, and one that repeats the last image although the robot has moved.
     pub(super) fn see(
         &mut self,

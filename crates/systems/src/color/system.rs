@@ -297,6 +297,10 @@ impl ColorSystem {
             bail!("no usable image of the first camera before this one");
         };
         ensure!(stamp >= since, "time goes back by {:.9} s", since.seconds_since(stamp));
+        ensure!(
+            !self.camera.has_seen(image),
+            "it is an image of the first camera: give a topic of the second one"
+        );
         let Some(second) = &mut self.second_camera else { return Ok(()) };
         let placed = second.camera.see(image, &self.params).map_err(anyhow::Error::msg)?;
         let number = match second.number {
