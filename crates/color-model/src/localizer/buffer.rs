@@ -14,13 +14,6 @@ pub(crate) struct BufferedFrame {
     pub(crate) odometry: OdometryDelta,
 }
 
-impl BufferedFrame {
-    /// Angle between the views of two successive frames, rad.
-    pub(crate) fn view_change(&self, next: &Self) -> f64 {
-        view_change(&self.mount, &next.odometry, &next.mount)
-    }
-}
-
 /// Angle between the views of a camera at two mounts with this odometry between, rad: rotation of the camera, and translation as seen at a distance of 1 m.
 pub(crate) fn view_change(before: &Pose3<f64>, odometry: &OdometryDelta, after: &Pose3<f64>) -> f64 {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), odometry.increment.heading());

@@ -182,7 +182,7 @@ where
     }
 
     /// Adds a camera that [`update_from`](Self::update_from) takes the frames of, and returns its number. It has a light of its own, since cameras differ in exposure
-    /// and white balance. The search for places uses the first camera alone.
+    /// and white balance. The errors of cameras are taken as independent: they should look in different directions. The search for places uses the first camera alone.
     pub fn add_camera(&mut self, camera: PinholeCamera) -> usize {
         self.cameras.push(RobotCamera::new(camera));
         self.cameras.len() - 1
@@ -259,6 +259,8 @@ where
     }
 
     /// [`update`](Self::update) from a frame of the camera of this number. A frame of an added camera weighs the places that are tracked; it starts no search.
+    /// Once the first camera is silent for longer than the interval of searches, no place is [`Tracking`](LocalizationStatus::Tracking) until a search confirms it. The light in
+    /// the outcome is that of this camera.
     ///
     /// # Errors
     /// As for [`update`](Self::update), or an error if there is no such camera.
@@ -276,6 +278,8 @@ where
             return self.update(image, mount, rng);
         }
         let places = self.weigh_places(camera, image, mount, rng)?;
+        // A search was due, and the first camera has shown nothing for it.
+        self.is_confirmed &= self.cameras[0].delta.seconds <= self.params.search.search_interval;
         self.choose_place(camera, mount, places);
         self.outcome()
     }
@@ -315,7 +319,7 @@ where
         self.cameras[camera].remember(mount, (log_ratio, share), n_frames);
     }
 
-    /// One step of the particle filter of a place. [Schulz & Fox 2004, IV]
+    /// One step of the particle filter of a place. After an error the filter is not usable. [Schulz & Fox 2004, IV]
     pub(super) fn step<R: Rng + ?Sized>(
         &self,
         filter: &mut ColorFilter<SunAndShade<T>>,
@@ -323,12 +327,12 @@ where
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
         let seconds = self.cameras[frame.camera()].delta.seconds;
-        filter.exchange_camera(frame.camera(), &self.prior, || self.params.camera_pose_noise.sample(rng));
+        filter.swap_camera(frame.camera(), &self.prior, || self.params.camera_pose_noise.sample(rng));
         filter.predict_lighting(seconds)?; // Eq. 6
         filter.weigh(frame, seconds, &self.params, rng)?; // Eqs. 14–16
         let ancestors = filter.resample(rng)?;
         filter.update_lighting(&ancestors, &self.params)?; // Eqs. 3–5
-        filter.exchange_camera(frame.camera(), &self.prior, CameraPoseError::default);
+        filter.swap_camera(frame.camera(), &self.prior, CameraPoseError::default);
         Ok(())
     }
 
@@ -353,13 +357,12 @@ where
         let params = &self.params.search;
         // At even odds, the frames support the map at the estimate, one of all places, as much as the background.
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
+        // A hidden camera speaks neither for the map nor against it, and a silent one no more.
         let is_seeing = |camera: &&RobotCamera| camera.delta.seconds <= params.search_interval;
-        let support: f64 = self.cameras.iter().filter(is_seeing).map(RobotCamera::log_support).sum();
-        let is_explained = support > odds.ln();
-        let is_searching = self.cameras.first().is_some_and(|first| is_seeing(&first));
-        let is_confirmed = is_searching && self.is_confirmed
-            || params.samples_per_place == 0.0
-            || self.params.relocalization.is_off();
+        let support = |camera: &RobotCamera| camera.log_support().max(0.0);
+        let is_explained = self.cameras.iter().filter(is_seeing).map(support).sum::<f64>() > odds.ln();
+        let is_confirmed =
+            self.is_confirmed || params.samples_per_place == 0.0 || self.params.relocalization.is_off();
         let status = match (self.n_updates >= params.n_buffered_frames, is_explained) {
             (true, false) => LocalizationStatus::Lost,
             (true, true) if share > TRACKING_PROBABILITY && is_narrow && is_confirmed => {

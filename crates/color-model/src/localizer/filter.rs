@@ -86,8 +86,14 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         Ok(Self { max_particles: particles.len(), particles, weights, hidden, others_hidden, weighing })
     }
 
-    /// Looks through the camera of this number, or after that through the first again. A new camera has this light and an error of its mount by `sample`.
-    pub(crate) fn exchange_camera(
+    /// Whether it has seen a frame of the camera of this number.
+    pub(crate) fn knows_camera(&self, camera: usize) -> bool {
+        self.others_hidden.len() >= camera
+    }
+
+    /// Swaps what belongs to the first camera with what belongs to the one of this number; a second call swaps back. A new camera has this light and an error of its
+    /// mount by `sample`.
+    pub(crate) fn swap_camera(
         &mut self,
         camera: usize,
         light: &Arc<T>,

@@ -4,7 +4,7 @@ use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest};
 
 use super::{
     ColorLocalizer, OdometryModel, StartPosePrior,
-    buffer::FrameBuffer,
+    buffer::{FrameBuffer, view_change},
     color_localizer::TRACKING_PROBABILITY,
     estimate::is_same_place,
     filter::ColorFilter,
@@ -41,7 +41,10 @@ where
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
         Ok(test.observe(share * log_evidence_here, |alternative| {
+            let is_new_camera = !alternative.knows_camera(frame.camera());
             match self.step(alternative, frame, rng) {
+                // The present place has learned the light of this camera, and a new one has not.
+                Ok(()) if is_new_camera => share * log_evidence_here,
                 Ok(()) => share * alternative.weighing.log_evidence,
                 Err(_) => f64::NEG_INFINITY,
             }
@@ -97,7 +100,9 @@ where
         let frames = buffer.frames();
         // Once the view has turned by a tile, its tiles show something else.
         let tile = f64::from(self.params.pixels.tile_pixels) / self.cameras[0].model.fx();
-        let shares = frames.windows(2).map(|pair| (pair[0].view_change(&pair[1]) / tile).min(1.0));
+        let shares = frames
+            .windows(2)
+            .map(|pair| (view_change(&pair[0].mount, &pair[1].odometry, &pair[1].mount) / tile).min(1.0));
         let shares = std::iter::once(1.0).chain(shares).collect();
         let lights = [&self.prior, self.lights.front().unwrap_or(&self.prior)];
         Search::new(self.scene(0, &()), (&self.area, start), &self.params, lights, (frames, shares))

@@ -115,6 +115,32 @@ fn second_camera_keeps_the_place_while_the_first_is_silent() {
     }
 }
 
+/// Something stands before it: it speaks neither for the map nor against it.
+#[test]
+fn covered_second_camera_does_not_make_the_robot_lost() {
+    let mut scene = Scene::new();
+    let start = Pose2::new(-0.5, 0.2, 0.4);
+    let moments = moments(&mut scene, start, 4);
+    let wall = scene.wall(&mut ChaCha8Rng::seed_from_u64(4));
+    let [with, without] = [true, false].map(|has_second| {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let mut localizer = localizer(&scene, start, &mut rng);
+        let second = localizer.add_camera(scene.camera);
+        let step = OdometryStep { increment: Some(Pose2::new(0.02, 0.0, 0.0175)), seconds: 0.1 };
+        let is_lost = |Moment { first, second: (_, behind), .. }: &Moment| {
+            localizer.predict(&step, &mut rng).expect("a sound step");
+            let outcome = localizer.update(&first.0, &first.1, &mut rng).expect("a sound frame");
+            if has_second {
+                localizer.update_from(second, &wall, behind, &mut rng).expect("a sound frame");
+            }
+            outcome.status == LocalizationStatus::Lost
+        };
+        moments.iter().map(is_lost).collect::<Vec<_>>()
+    });
+    let n_more = with.iter().zip(&without).filter(|(with, without)| **with && !**without).count();
+    assert_eq!(n_more, 0, "lost frames with and without it: {with:?} {without:?}");
+}
+
 #[test]
 fn frame_of_a_camera_that_was_not_added_is_refused() {
     let mut scene = Scene::new();

@@ -58,7 +58,8 @@ impl Choice {
         let image = best(images.into_iter().filter(|image| n_cameras == 1 || has_passed(image)));
         let motion = motion.filter(|motion| motion.is_odometry() || !transforms.iter().any(has_passed));
         let estimate = best(of(Kind::EstimatedPose));
-        let any_camera = n_cameras <= 1 || wanted.contains_key(&Kind::CameraInfo);
+        let n_all_cameras = candidates.iter().filter(|topic| topic.kind == Kind::Image).count();
+        let any_camera = n_all_cameras <= 1 || wanted.contains_key(&Kind::CameraInfo);
         let chosen = [
             best(of(Kind::Scan)),
             motion,
@@ -231,6 +232,16 @@ mod tests {
         let choice = Choice::among(&topics, &[], tried).unwrap();
         assert_eq!(read(&choice), ["/left/camera_info", "/left/image_rect"]);
         assert!(choice.is_rectified);
+    }
+
+    #[test]
+    fn a_named_camera_does_not_get_the_calibration_of_another() {
+        let image = |name| topic(name, "sensor_msgs/msg/Image", 80);
+        let info = topic("/top/camera_info", "sensor_msgs/msg/CameraInfo", 90);
+        let topics = [image("/top/image_rect"), info, image("/bottom/image_rect")];
+        assert_eq!(read(&choose(&topics, &["/bottom/image_rect"], &[2]).unwrap()), ["/bottom/image_rect"]);
+        let both = choose(&topics, &["/bottom/image_rect", "/top/camera_info"], &[2]).unwrap();
+        assert_eq!(read(&both), ["/bottom/image_rect", "/top/camera_info"]);
     }
 
     #[test]

@@ -44,9 +44,9 @@ impl LoggedCamera {
         }
     }
 
-    /// Whether this is its last image.
-    pub(super) fn has_seen(&self, image: &EncodedImage) -> bool {
-        self.last.as_ref().is_some_and(|last| last.image == *image)
+    /// Where the camera is on the robot, once a record has said so.
+    pub(super) fn mount(&self) -> Option<&Pose3<f64>> {
+        self.mount.as_ref()
     }
 
     /// Decodes an image. Refuses one without calibration or mount, and one that repeats the last image although the robot has moved.

@@ -1,6 +1,6 @@
 use std::{sync::Arc, time::Duration};
 
-use anyhow::{bail, ensure};
+use anyhow::ensure;
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::ColorMap;
@@ -9,8 +9,8 @@ use wayfix_color_model::{
     ImageLikelihoodChoice, LightingFilterBank, LocalizationStatus, OdometryNoise, OdometryStep,
     PixelClassifier, StartPosePrior, YuvImage,
 };
-use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_evaluation::{errors::PoseWithTruth, plot::Decimated};
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
+use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_system_core::{
@@ -18,7 +18,7 @@ use wayfix_system_core::{
 };
 
 use super::{
-    ClassificationCounts, ColorSystemParams,
+    ClassificationCounts, ColorFrameResult, ColorSystemParams,
     camera::{LoggedCamera, PlacedImage, RecordIterator, SecondCamera, pinhole},
     tally,
 };
@@ -41,10 +41,14 @@ pub struct ColorSystem {
     rng: ChaCha8Rng,
     camera: LoggedCamera,
     second_camera: Option<SecondCamera>,
+    /// Computing time of its images since the last result.
+    second_step: Duration,
     labels: Option<(Stamp, EncodedImage)>,
     localizer: Option<Localizer>,
     pending: Pending,
     odometry: LoggedOdometry,
+    /// Stamp of the last increment of odometry.
+    moved_until: Option<Stamp>,
     dead_reckoning: Option<Pose2<f64>>,
     frames: Decimated<ColorFrameResult>,
     latest: Option<ColorFrameResult>,
@@ -76,36 +80,6 @@ impl Pending {
     }
 }
 
-/// Result of one frame.
-#[derive(Clone, Debug)]
-pub struct ColorFrameResult {
-    /// Capture time.
-    pub stamp: Stamp,
-    /// The pose estimate, with covariance in its body frame.
-    pub pose: Gaussian<Pose2<f64>>,
-    /// Quality of the estimate.
-    pub status: LocalizationStatus,
-    /// Dead-reckoned pose; `None` without a known start.
-    pub odometry: Option<Pose2<f64>>,
-    /// Effective number of particles.
-    pub effective_particles: f64,
-    /// Number of particles.
-    pub n_particles: usize,
-    /// Probability of each light of the bank.
-    pub light_probabilities: Vec<f64>,
-    /// Classification counts, if the log has true labels.
-    pub labelled: Option<ClassificationCounts>,
-    /// Computing time after decoding.
-    pub step: Duration,
-}
-
-impl ColorFrameResult {
-    /// The estimate beside the truth at its stamp.
-    pub(super) fn beside(&self, truth: Pose2<f64>) -> PoseWithTruth {
-        PoseWithTruth { estimate: *self.pose.mean(), covariance: *self.pose.covariance(), truth }
-    }
-}
-
 type Localizer = ColorLocalizer<LightingFilterBank, OdometryNoise, ImageLikelihoodChoice>;
 
 impl ColorSystem {
@@ -129,10 +103,12 @@ impl ColorSystem {
             rng: ChaCha8Rng::seed_from_u64(seed),
             camera: LoggedCamera::default(),
             second_camera: None,
+            second_step: Duration::ZERO,
             labels: None,
             localizer: None,
             pending: Pending::default(),
             odometry: LoggedOdometry::new(VELOCITY_TIMEOUT),
+            moved_until: None,
             dead_reckoning,
             frames: Decimated::new(MOST_ESTIMATES),
             latest: None,
@@ -224,7 +200,7 @@ impl ColorSystem {
         let placed = self.camera.see(image, &self.params)?;
         let stopwatch = Stopwatch::start();
         let outcome = self.localize(stamp, &placed).map_err(|error| error.to_string())?;
-        let step = stopwatch.elapsed();
+        let step = stopwatch.elapsed() + std::mem::take(&mut self.second_step);
 
         self.events.count(match outcome.status {
             LocalizationStatus::Tracking => "tracking",
@@ -278,30 +254,58 @@ impl ColorSystem {
         Ok(localizer.update(image, mount, &mut self.rng)?)
     }
 
-    /// Takes the images of the second camera before this time, from the first image of the first camera on.
+    fn next_second_image(&mut self, before: Stamp) -> Option<(Stamp, EncodedImage)> {
+        self.second_camera.as_mut()?.next_image_before(before)
+    }
+
+    /// Takes the images of the second camera before this time; velocities hold until each.
     fn look_through_second_camera(&mut self, before: Stamp) {
-        let next = |system: &mut Self| system.second_camera.as_mut()?.next_image_before(before);
-        while let Some((stamp, image)) = next(self) {
+        while let Some((stamp, image)) = self.next_second_image(before) {
             self.move_until(stamp);
-            match self.see_second(stamp, &image) {
-                Ok(()) => self.events.count("second_camera_image"),
-                Err(reason) => {
-                    self.events.refuse("record_refused", format!("second camera, {stamp}: {reason}"));
-                }
-            }
+            self.see_second(stamp, &image);
         }
     }
 
-    fn see_second(&mut self, stamp: Stamp, image: &EncodedImage) -> anyhow::Result<()> {
+    /// Moves by an increment of odometry; an image of the second camera on the way is seen after its share of the motion.
+    fn move_along(&mut self, motion: &LoggedMotion, until: Stamp) {
+        let (mut rest, mut since) = (*motion, self.moved_until.replace(until));
+        while let Some((stamp, image)) = self.next_second_image(until) {
+            let share = since.map_or(0.0, |since| {
+                (stamp.seconds_since(since) / until.seconds_since(since)).clamp(0.0, 1.0)
+            });
+            let identity = Pose2::identity();
+            let increment = identity.retract(&(identity.local(&rest.increment) * share));
+            self.move_by(&LoggedMotion { increment, ..rest });
+            rest.increment = increment.inverse().compose(&rest.increment);
+            since = Some(stamp);
+            self.see_second(stamp, &image);
+        }
+        self.move_by(&rest);
+    }
+
+    /// Localizes by an image of the second camera, once the first one has seen the start.
+    fn see_second(&mut self, stamp: Stamp, image: &EncodedImage) {
+        let stopwatch = Stopwatch::start();
+        match self.localize_by_second(stamp, image) {
+            Ok(true) => self.events.count("second_camera_image"),
+            Ok(false) => {}
+            Err(reason) => {
+                self.events.refuse("record_refused", format!("second camera, {stamp}: {reason}"));
+            }
+        }
+        self.second_step += stopwatch.elapsed();
+    }
+
+    fn localize_by_second(&mut self, stamp: Stamp, image: &EncodedImage) -> anyhow::Result<bool> {
         let (Some(since), Some(localizer)) = (self.pending.since, &mut self.localizer) else {
-            bail!("no usable image of the first camera before this one");
+            return Ok(false);
         };
         ensure!(stamp >= since, "time goes back by {:.9} s", since.seconds_since(stamp));
+        let Some(second) = &mut self.second_camera else { return Ok(false) };
         ensure!(
-            !self.camera.has_seen(image),
-            "it is an image of the first camera: give a topic of the second one"
+            second.camera.mount() != self.camera.mount(),
+            "its mount is that of the first camera: give the log or the topic of the second one"
         );
-        let Some(second) = &mut self.second_camera else { return Ok(()) };
         let placed = second.camera.see(image, &self.params).map_err(anyhow::Error::msg)?;
         let number = match second.number {
             Some(number) => number,
@@ -311,7 +315,7 @@ impl ColorSystem {
             localizer.predict(&step, &mut self.rng)?;
         }
         localizer.update_from(number, &placed.image, &placed.mount, &mut self.rng)?;
-        Ok(())
+        Ok(true)
     }
 
     fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<ClassificationCounts> {
@@ -331,18 +335,24 @@ fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<StartPo
 
 impl System for ColorSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
-        self.look_through_second_camera(record.stamp);
         match &record.data {
             data @ (RecordData::CameraInfo(_) | RecordData::CameraMount(_)) => self.camera.take(data),
             RecordData::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
             RecordData::Image(image) => {
+                self.look_through_second_camera(record.stamp);
                 self.move_until(record.stamp);
                 self.see(record.stamp, image)?;
             }
-            _ => {
+            RecordData::OdometryIncrement(_) => {
+                let motion = self.odometry.take(record, &mut self.events)?;
+                motion.iter().for_each(|motion| self.move_along(motion, record.stamp));
+            }
+            RecordData::Velocity(_) => {
+                self.look_through_second_camera(record.stamp);
                 let motion = self.odometry.take(record, &mut self.events)?;
                 motion.iter().for_each(|motion| self.move_by(motion));
             }
+            _ => {}
         }
         Ok(())
     }

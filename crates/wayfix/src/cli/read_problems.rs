@@ -42,6 +42,15 @@ pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> 
         print_message(format!("refused … and {n_unlisted} more"));
     }
     events.warnings().iter().for_each(print_message); // those of the log were printed when it was read
+    let of_run: Vec<String> = events.warnings().iter().map(|warning| warning.text.clone()).collect();
+    add_read_report(events, read).chain(of_run).chain(interrupt::warning()).collect()
+}
+
+/// Counts the read problems of a log, and returns its warnings.
+pub(super) fn add_read_report<'a>(
+    events: &mut EventCounts,
+    read: &'a ReadReport,
+) -> impl Iterator<Item = String> + use<'a> {
     events.add("log_problem", read.n_problems());
     if read.end != LogCompleteness::Complete {
         events.count("log_incomplete");
@@ -49,6 +58,5 @@ pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> 
     for LogWarning { name, .. } in &read.warnings {
         events.count(name);
     }
-    let of_run = read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone());
-    of_run.chain(interrupt::warning()).collect()
+    read.warnings.iter().map(|warning| warning.text.clone())
 }

@@ -128,7 +128,7 @@ fn camera_that_stops_and_returns() {
 #[test]
 fn either_of_two_cameras_stops_and_returns() {
     let venue = hall(6);
-    let behind = CameraOnHead { pan: std::f64::consts::PI, gain: 0.7 };
+    let behind = CameraOnHead { pan: std::f64::consts::PI, gain: 0.7, phase_ms: 50 };
     let light = |_| -> Box<dyn LightField> { Box::new(venue.bright.clone()) };
     let cameras = [CameraOnHead::default(), behind];
     let logs = drive_with_cameras(&venue, N_FRAMES, LeggedRobotParams::default(), light, |_, _| {}, cameras);

@@ -54,11 +54,13 @@ pub(crate) struct CameraOnHead {
     pub(crate) pan: f64,
     /// Its exposure relative to that of the venue.
     pub(crate) gain: f64,
+    /// When it takes a picture in each tenth of a second, ms: from 1 to 100.
+    pub(crate) phase_ms: usize,
 }
 
 impl Default for CameraOnHead {
     fn default() -> Self {
-        Self { pan: 0.0, gain: 1.0 }
+        Self { pan: 0.0, gain: 1.0, phase_ms: 100 }
     }
 }
 
@@ -87,34 +89,47 @@ pub(crate) fn drive_with_cameras<const N: usize>(
     });
     let mut logs = cameras.map(|_| vec![at(0, info.clone())]);
     for frame in 0..n_frames {
-        (0..100).for_each(|_| robot.step(&mut streams));
-        let (pose, moved) = (robot.pose(), robot.odometry(0.1, &mut streams));
-        if let Some(first) = logs.first_mut() {
-            first.push(at(frame + 1, RecordData::OdometryIncrement(moved)));
-            first.push(at(frame + 1, RecordData::TruePose(pose)));
-        }
-        let mut surfaces = map.clone();
-        surfaces.extend(things.surfaces(0.1 * frame as f64, &pose));
         let light = light(frame);
-        let scene =
-            LeagueScene { surfaces, paints: &venue.paints, light: light.as_ref(), backdrop: &venue.hall };
-        for (CameraOnHead { pan, gain }, records) in cameras.iter().zip(&mut logs) {
-            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *pan);
-            let panned = |pose: Pose3<f64>| Pose3 { rotation: pose.rotation * turn, ..pose };
-            let eye = panned(robot.camera_pose());
-            let rng = streams.of(RandomStreamPurpose::Picture);
-            let mut picture = simulator.take(&scene, [&eye, &eye], &LinearRgb::repeat(*gain), rng);
-            spoil(frame, &mut picture);
-            let jpeg = EncodedImage::jpeg(picture.width, picture.height, &picture.rgb, 88).expect("an image");
-            let mount = RecordData::CameraMount(panned(robot.reported_mount()));
-            records.extend([mount, RecordData::Image(jpeg)].map(|data| at(frame + 1, data)));
+        let mut moved = None;
+        for phase_ms in 1..=100 {
+            robot.step(&mut streams);
+            let pose = robot.pose();
+            if phase_ms == 100 {
+                moved = Some(robot.odometry(0.1, &mut streams));
+            }
+            if let (Some(moved), Some(first)) = (moved, logs.first_mut()) {
+                first.push(at(frame + 1, RecordData::OdometryIncrement(moved)));
+                first.push(at(frame + 1, RecordData::TruePose(pose)));
+            }
+            let is_due = |(camera, _): &(&CameraOnHead, &mut Vec<Record>)| camera.phase_ms == phase_ms;
+            for (CameraOnHead { pan, gain, .. }, records) in cameras.iter().zip(&mut logs).filter(is_due) {
+                let mut surfaces = map.clone();
+                surfaces.extend(things.surfaces(0.1 * frame as f64, &pose));
+                let (light, backdrop) = (light.as_ref(), &venue.hall);
+                let scene = LeagueScene { surfaces, paints: &venue.paints, light, backdrop };
+                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *pan);
+                let panned = |pose: Pose3<f64>| Pose3 { rotation: pose.rotation * turn, ..pose };
+                let eye = panned(robot.camera_pose());
+                let rng = streams.of(RandomStreamPurpose::Picture);
+                let mut picture = simulator.take(&scene, [&eye, &eye], &LinearRgb::repeat(*gain), rng);
+                spoil(frame, &mut picture);
+                let jpeg =
+                    EncodedImage::jpeg(picture.width, picture.height, &picture.rgb, 88).expect("an image");
+                let mount = RecordData::CameraMount(panned(robot.reported_mount()));
+                let of_frame = [mount, RecordData::Image(jpeg)];
+                records.extend(of_frame.map(|data| at_ms(100 * frame + phase_ms, data)));
+            }
         }
     }
     logs
 }
 
 fn at(tenths: usize, data: RecordData) -> Record {
-    Record { stamp: Stamp::from_seconds(1000.0 + 0.1 * tenths as f64).expect("a time"), data }
+    at_ms(100 * tenths, data)
+}
+
+fn at_ms(ms: usize, data: RecordData) -> Record {
+    Record { stamp: Stamp::from_seconds(1000.0 + 0.001 * ms as f64).expect("a time"), data }
 }
 
 /// A frame of the localizer against the truth.

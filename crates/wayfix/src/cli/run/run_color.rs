@@ -5,7 +5,7 @@ use wayfix_color_model::LightingPriors;
 use wayfix_estimation_traits::Pose2;
 use wayfix_evaluation::terminal::{self, print};
 use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
-use wayfix_sensor_log::{LogOpenOptions, Record};
+use wayfix_sensor_log::{LogOpenOptions, ReadReport, Record};
 use wayfix_system_core::{LogOverview, RunStep, Stopwatch, System, without_odometry_delay};
 use wayfix_systems::color::{
     self, ColorEstimateRecorder, ColorRun, ColorRunSetup, ColorSystemParams, ParticleSnapshots,
@@ -16,7 +16,7 @@ use super::super::{
     common::Common,
     input::{Topics, name_of, read_toml},
     outputs::Outputs,
-    read_problems::{add_read_problems, read_all, read_overview, whole},
+    read_problems::{add_read_problems, add_read_report, read_all, read_overview, whole},
     truth::TruthFile,
 };
 use super::interrupt;
@@ -44,12 +44,13 @@ pub(in crate::cli) struct Arguments {
     topics: Topics,
     /// A log of a second camera of the robot: its images, calibration and mount, on the same clock; it may be the same bag with `--second-topic`.
     ///
-    /// Its images correct the pose; the search for an unknown place uses the first camera alone. Colours and light are estimated for each camera.
+    /// Its images correct the pose between those of the first camera, at which poses are written. The search for an unknown place uses the first camera alone. Colours and
+    /// light are estimated for each camera. An MCAP of ours has its own `/camera/info` and `/camera/mount`.
     #[arg(long, value_name = "PATH")]
     second_camera: Vec<PathBuf>,
-    /// The topic of the second camera's images in a ROS 2 bag.
+    /// The topic of the second camera's images in a ROS 2 bag; repeat it for that of its calibration.
     #[arg(long, value_name = "NAME", requires = "second_camera")]
-    second_topic: Option<String>,
+    second_topic: Vec<String>,
     #[command(flatten)]
     truth: TruthFile,
     /// The map: coloured polygons and posts, TOML or JSON.
@@ -155,6 +156,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let open = || wayfix_sensor_log::open_all(&arguments.log, &options);
     let log = open()?;
     let origin = log.meta().first_format();
+    let (second_camera, second_read) =
+        second_camera(&arguments.second_camera, arguments.second_topic)?.unzip();
     // What is to be sorted is kept.
     let is_kept = arguments.truth.truth.is_some() || params.odometry_delay != 0.0;
     let overview = if is_kept {
@@ -172,8 +175,6 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
             Box::new(open()?.map(Cow::Owned))
         })
     };
-
-    let second_camera = second_camera(&arguments.second_camera, arguments.second_topic)?;
 
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateRecorder> = outputs.estimates(origin)?;
@@ -197,7 +198,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     );
     bar.finish_and_clear();
     let mut color = color?;
-    let warnings = add_read_problems(color.system.events(), &read);
+    let mut warnings = add_read_problems(color.system.events(), &read);
+    if let Some(read) = &second_read {
+        warnings.extend(
+            add_read_report(color.system.events(), read).map(|text| format!("second camera: {text}")),
+        );
+    }
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
@@ -210,14 +216,14 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 }
 
 /// Opens the log of a second camera; prints its read problems and assumptions.
-fn second_camera(log: &[PathBuf], topic: Option<String>) -> Result<Option<RecordIterator>> {
+fn second_camera(log: &[PathBuf], topics: Vec<String>) -> Result<Option<(RecordIterator, ReadReport)>> {
     if log.is_empty() {
         return Ok(None);
     }
-    let options = LogOpenOptions { topics: topic.into_iter().collect(), ..LogOpenOptions::default() };
+    let options = LogOpenOptions { topics, ..LogOpenOptions::default() };
     let open = || wayfix_sensor_log::open_all(log, &options);
-    read_overview(open, 0).context("cannot read the log of the second camera")?;
-    Ok(Some(Box::new(open()?)))
+    let overview = read_overview(open, 0).context("cannot read the log of the second camera")?;
+    Ok(Some((Box::new(open()?), overview.read)))
 }
 
 /// Frames of the film strip.
