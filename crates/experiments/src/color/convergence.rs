@@ -107,11 +107,8 @@ fn trial(
     params: &ColorSystemParams,
 ) -> Result<ConvergenceTrial> {
     let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
-    let run: ColorRun = run(
-        &records,
-        ColorRunSetup { map: Arc::clone(map), bank: bank.clone(), params: params.clone(), start, seed },
-        |_| {},
-    )?;
+    let run: ColorRun =
+        run(&records, ColorRunSetup { start, ..ColorRunSetup::new(map, bank, params, seed) }, |_| {})?;
     let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
     let reported_tracking = run
         .samples()

@@ -33,17 +33,7 @@ pub(crate) fn frame_time(
     for n_particles in N_PARTICLES {
         let mut params = params.clone();
         params.localizer.max_particles = n_particles;
-        let run = run(
-            &records[..end],
-            ColorRunSetup {
-                map: Arc::clone(map),
-                bank: bank.clone(),
-                params: params.clone(),
-                start: None,
-                seed,
-            },
-            |_| {},
-        )?;
+        let run = run(&records[..end], ColorRunSetup::new(map, bank, &params, seed), |_| {})?;
         let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
         points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));
     }

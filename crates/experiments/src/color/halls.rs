@@ -29,17 +29,8 @@ pub(crate) fn other_halls(
     let runs: Vec<ReportRun> = seeds
         .par_iter()
         .map(|&seed| {
-            let mut run = run(
-                &drive(seed, drive_params)?,
-                ColorRunSetup {
-                    map: Arc::clone(map),
-                    bank: bank.clone(),
-                    params: params.clone(),
-                    start: None,
-                    seed,
-                },
-                |_| {},
-            )?;
+            let mut run =
+                run(&drive(seed, drive_params)?, ColorRunSetup::new(map, bank, params, seed), |_| {})?;
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;

@@ -32,17 +32,7 @@ pub(crate) fn switching(
     seed: u64,
 ) -> Result<ReportRun> {
     let localized = |bank: &LightingFilterBank| -> Result<Curve> {
-        let run = run(
-            records,
-            ColorRunSetup {
-                map: Arc::clone(map),
-                bank: bank.clone(),
-                params: params.clone(),
-                start: None,
-                seed,
-            },
-            |_| {},
-        )?;
+        let run = run(records, ColorRunSetup::new(map, bank, params, seed), |_| {})?;
         Ok(rates(&run))
     };
     let curves = [("jump_markov", localized(bank)?), ("single_gaussian", localized(single)?)];

@@ -100,11 +100,7 @@ fn rates(
             let mut params = params.clone();
             params.localizer.withheld_color = Some(color);
             let bank = priors::bank(&kinds[kind], &params)?;
-            let run = run(
-                records,
-                ColorRunSetup { map: Arc::clone(map), bank, params, start: None, seed },
-                |_| {},
-            )?;
+            let run = run(records, ColorRunSetup::new(map, &bank, &params, seed), |_| {})?;
             let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());
             Ok(rate_of(labelled, ColorId(color as u8), MIN_PIXELS))
         })

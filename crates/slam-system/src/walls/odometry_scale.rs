@@ -117,21 +117,27 @@ mod tests {
     use super::*;
     use wayfix_estimation_traits::{LieGroup, Manifold};
 
+    /// A match that sees a motion, linearized about odometry.
+    fn matched(odometry: Pose2<f64>, seen: &Pose2<f64>, information: Matrix3<f64>) -> ScanAlignment {
+        let correction = odometry.local(seen);
+        let information_vector = information * correction;
+        ScanAlignment {
+            pose: odometry,
+            correction,
+            information,
+            information_vector,
+            guess_scale: 1.0,
+            overlap: 1.0,
+        }
+    }
+
     /// A log of 40 motions of which scans see `seen(motion)` with ±1 mm, linearized about odometry.
     fn after(seen: impl Fn(&Pose2<f64>) -> Pose2<f64>, information: Matrix3<f64>) -> OdometryScale {
         let mut scale = OdometryScale::default();
         for step in 0..40 {
             let odometry = Pose2::new(0.25, 0.01, 0.1 * f64::from(step).sin());
             let noise = Pose2::new(0.001 * f64::from(step % 2 * 2 - 1), 0.0, 0.0);
-            let difference = odometry.local(&seen(&odometry).compose(&noise));
-            let found = ScanAlignment {
-                pose: odometry,
-                correction: difference,
-                information,
-                information_vector: information * difference,
-                guess_scale: 1.0,
-                overlap: 1.0,
-            };
+            let found = matched(odometry, &seen(&odometry).compose(&noise), information);
             let noise = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 1e-4));
             scale.add(&odometry, &noise, &odometry, &found);
         }
@@ -175,15 +181,7 @@ mod tests {
             // Straight on; odometry turns by ±5 mrad, scans by ±2 mrad at other times.
             let odometry = Pose2::new(0.25, 0.0, 0.005 * f64::from(step % 2 * 2 - 1));
             let seen = Pose2::new(0.25, 0.0, 0.002 * f64::from(step / 2 % 2 * 2 - 1));
-            let difference = odometry.local(&seen);
-            let found = ScanAlignment {
-                pose: odometry,
-                correction: difference,
-                information,
-                information_vector: information * difference,
-                guess_scale: 1.0,
-                overlap: 1.0,
-            };
+            let found = matched(odometry, &seen, information);
             let noise = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 25e-6));
             scale.add(&odometry, &noise, &odometry, &found);
         }

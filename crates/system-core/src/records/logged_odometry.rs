@@ -117,6 +117,11 @@ impl LoggedOdometry {
         }
     }
 
+    /// The kind that moves the robot; `None` before the first record.
+    pub fn kind(&self) -> Option<OdometryRecordKind> {
+        self.kind
+    }
+
     /// The motion by the velocity that holds, from the last call to `stamp`.
     pub fn advance_to(&mut self, stamp: Stamp, events: &mut EventCounts) -> Option<LoggedMotion> {
         let held = self.velocity.motion_until(stamp, self.velocity_timeout)?;

@@ -43,6 +43,18 @@ pub struct ColorRunSetup {
     pub seed: u64,
 }
 
+impl ColorRunSetup {
+    /// With the start pose of the log.
+    pub fn new(
+        map: &Arc<ColorMap>,
+        bank: &LightingFilterBank,
+        params: &ColorSystemParams,
+        seed: u64,
+    ) -> Self {
+        Self { map: Arc::clone(map), bank: bank.clone(), params: params.clone(), start: None, seed }
+    }
+}
+
 /// Processes the records of a log with the localizer and shows each step to `observe`.
 ///
 /// # Errors

@@ -14,7 +14,8 @@ use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 use wayfix_system_core::{
-    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, Stopwatch, System, VELOCITY_TIMEOUT,
+    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, OdometryRecordKind, Stopwatch, System,
+    VELOCITY_TIMEOUT,
 };
 
 use super::{
@@ -347,12 +348,13 @@ impl System for ColorSystem {
                 let motion = self.odometry.take(record, &mut self.events)?;
                 motion.iter().for_each(|motion| self.move_along(motion, record.stamp));
             }
-            RecordData::Velocity(_) => {
-                self.look_through_second_camera(record.stamp);
+            _ => {
+                if self.odometry.kind() == Some(OdometryRecordKind::Velocities) {
+                    self.look_through_second_camera(record.stamp);
+                }
                 let motion = self.odometry.take(record, &mut self.events)?;
                 motion.iter().for_each(|motion| self.move_by(motion));
             }
-            _ => {}
         }
         Ok(())
     }

@@ -213,7 +213,7 @@ fn localize(
     let records = first_seconds(records, quick_s.filter(|_| job.options.quick));
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleSnapshots::new(color::n_images(&records));
-    let setup = ColorRunSetup { map, bank, params: params.clone(), start: None, seed: job.options.seed };
+    let setup = ColorRunSetup::new(&map, &bank, params, job.options.seed);
     let mut run = color::run(&records, setup, |RunStep { system, record, .. }| {
         estimates.observe(record, system);
         particles.observe(system);
