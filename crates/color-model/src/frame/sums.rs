@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Lanes of a sum: y u v, yy uu vv yu yv uv, count, background, outlier count.
 pub(crate) const LANES: usize = 12;
-const COUNT: usize = 9;
+pub(crate) const COUNT: usize = 9;
 const BACKGROUND: usize = 10;
 pub(crate) const OUTLIERS: usize = 11;
 

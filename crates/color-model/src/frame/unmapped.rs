@@ -18,10 +18,10 @@ pub(crate) struct UnmappedColors {
     cells: Vec<usize>,
     /// Tiles of each cell.
     counts: Vec<f64>,
-    /// $`\ln \prod_m (q_k + m) / q_k`$ of each cell, for every number of its tiles.
-    log_products: Vec<Vec<LogWeight>>,
+    /// $`\ln \prod_m (q_k + m) / q_k`$ of each cell.
+    log_products: Vec<RunningSums>,
     /// $`\ln n!`$.
-    log_factorials: Vec<LogWeight>,
+    log_factorials: RunningSums,
     /// Log-likelihood of all tiles.
     all: LogWeight,
 }
@@ -42,12 +42,12 @@ impl UnmappedColors {
         cells.iter().for_each(|cell| counts[*cell] += 1.0);
         let log_products = counts.iter().map(|count| {
             let share = count / tiles.len() as f64;
-            running_sums(*count as usize, |m| ((share + m) / share).ln())
+            RunningSums::new(*count as usize, |m| ((share + m) / share).ln())
         });
         let mut colors = Self {
             cells,
             log_products: log_products.collect(),
-            log_factorials: running_sums(tiles.len(), |n| (1.0 + n).ln()),
+            log_factorials: RunningSums::new(tiles.len(), |n| (1.0 + n).ln()),
             counts,
             all: 0.0,
         };
@@ -70,26 +70,31 @@ impl UnmappedColors {
 
     /// $`\ln p(n) - \sum_k n_k \ln q_k`$.
     fn log_likelihood(&self, counts: &[f64]) -> LogWeight {
-        let products = counts.iter().zip(&self.log_products).map(|(count, table)| between(table, *count));
-        products.sum::<f64>() - between(&self.log_factorials, counts.iter().sum())
+        let products = counts.iter().zip(&self.log_products).map(|(count, table)| table.at(*count));
+        products.sum::<f64>() - self.log_factorials.at(counts.iter().sum())
     }
 }
 
-/// Sums of the first 0, 1 … `n` terms.
-fn running_sums(n: usize, term: impl Fn(f64) -> f64) -> Vec<f64> {
-    let mut sum = 0.0;
-    let terms = (0..n).map(|at| {
-        sum += term(at as f64);
-        sum
-    });
-    std::iter::once(0.0).chain(terms).collect()
-}
+/// Sums of the first 0, 1 … terms, each with what the next term adds: linear in between.
+#[derive(Clone, Debug)]
+struct RunningSums(Vec<(f64, f64)>);
 
-/// Linear interpolation in a table.
-fn between(table: &[f64], at: f64) -> f64 {
-    let below = (at as usize).min(table.len() - 1);
-    let above = (below + 1).min(table.len() - 1);
-    table[below] + (at - below as f64).clamp(0.0, 1.0) * (table[above] - table[below])
+impl RunningSums {
+    fn new(n: usize, term: impl Fn(f64) -> f64) -> Self {
+        let mut sums = vec![0.0];
+        for at in 0..n {
+            sums.push(sums[at] + term(at as f64));
+        }
+        let next = sums.iter().skip(1).chain(sums.last());
+        Self(sums.iter().zip(next).map(|(sum, next)| (*sum, next - sum)).collect())
+    }
+
+    #[inline]
+    fn at(&self, n: f64) -> f64 {
+        let below = (n as usize).min(self.0.len() - 1);
+        let (sum, step) = self.0[below];
+        sum + (n - below as f64).clamp(0.0, 1.0) * step
+    }
 }
 
 #[cfg(test)]

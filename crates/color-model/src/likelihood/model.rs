@@ -157,7 +157,7 @@ pub struct TileScratch {
 fn show_to_all(tiles: &TileSums, n_lights: usize, shown: &mut [PixelSums]) {
     let Some(n_colors) = shown.len().checked_div(n_lights) else { return };
     for sums in shown.chunks_exact_mut(n_colors.max(1)) {
-        tiles.regions().for_each(|region| sums[region.color].add(&region.sums));
+        tiles.regions().for_each(|region| sums[region.color].add(&region.sums()));
     }
 }
 

@@ -9,7 +9,7 @@ use super::{PixelLikelihoodFrame, PixelLikelihoodParams, TileLight, TileLikeliho
 const N_FIT_STEPS: usize = 2;
 
 impl TileLikelihood {
-    /// Some lights after expectation maximization [Dempster et al. 1977] on all tiles, and the logarithm of their density, as of [`TileLight::learned`]. It begins with the
+    /// Some lights after expectation maximization [Dempster et al. 1977] on all tiles, which are [weighed](Self::weigh) in them then, and the logarithm of their density, as of [`TileLight::learned`]. It begins with the
     /// tiles that show the map by the beliefs; of two lights, the first one begins with the brighter ones.
     pub(crate) fn fit(
         &mut self,
@@ -30,13 +30,15 @@ impl TileLikelihood {
             }
         }
         let mut fitted = (Vec::new(), 0.0);
-        for _ in 0..N_FIT_STEPS {
+        for step in 0..N_FIT_STEPS {
+            if step > 0 {
+                self.shares(beliefs.len(), params.outlier_share, &mut shares);
+            }
             let learned = beliefs.iter().enumerate().map(|(at, belief)| {
                 TileLight::learned(*belief, self.weighted(&shares, (at, beliefs.len())), params, noise)
             });
             let (lights, logs): (Vec<_>, Vec<_>) = learned.unzip();
             self.weigh(&lights);
-            self.shares(lights.len(), params.outlier_share, &mut shares);
             fitted = (lights, logs.iter().sum());
         }
         fitted
@@ -48,12 +50,12 @@ impl TileLikelihood {
         let mut means = vec![(0.0, 0.0); n_colors];
         for region in &self.regions {
             let (sum, weight) = &mut means[region.color];
-            *sum += region.share * region.mean.x;
+            *sum += region.share * region.pixels.mean.x;
             *weight += region.share;
         }
         let relative = |region: &TileRegionColor| {
             let (sum, weight) = means[region.color];
-            region.share * region.mean.x * weight / sum.max(f64::MIN_POSITIVE)
+            region.share * region.pixels.mean.x * weight / sum.max(f64::MIN_POSITIVE)
         };
         let mut start = 0;
         let tiles = self.tiles.iter().map(|tile| {
@@ -74,7 +76,7 @@ impl TileLikelihood {
         starts.zip(&self.tiles).zip(shares.chunks_exact(n_lights)).flat_map(move |((start, tile), shares)| {
             let weight = tile.weight * shares[light];
             let regions = self.regions[start..tile.end].iter();
-            regions.map(move |region| (weight * region.share, region.mean, region.color))
+            regions.map(move |region| (weight * region.share, region.pixels.mean, region.color))
         })
     }
 

@@ -12,6 +12,7 @@ pub(crate) struct TileLight(Vec<ColorOfTile>);
 #[derive(Clone, Debug)]
 struct ColorOfTile {
     mean: Vector3<f64>,
+    variance: Vector3<f64>,
     information: Vector3<f64>,
     log_peak: f64,
 }
@@ -95,16 +96,17 @@ impl TileLight {
 impl ColorOfTile {
     fn new(mean: Vector3<f64>, variance: Vector3<f64>) -> Self {
         let log_peak = -0.5 * variance.map(|v| std::f64::consts::TAU * v).product().ln();
-        Self { mean, information: variance.map(f64::recip), log_peak }
+        Self { mean, variance, information: variance.map(f64::recip), log_peak }
     }
 
     fn widened(&self, variance: &Vector3<f64>) -> Self {
-        Self::new(self.mean, self.information.map(f64::recip) + variance)
+        Self::new(self.mean, self.variance + variance)
     }
 
     /// On average over the pixels of a region.
     fn log_density(&self, region: &TileRegionColor) -> f64 {
-        self.log_peak - 0.5 * (squared(region.mean - self.mean) + region.scatter).dot(&self.information)
+        self.log_peak
+            - 0.5 * (squared(region.pixels.mean - self.mean) + region.pixels.scatter).dot(&self.information)
     }
 }
 

@@ -1,9 +1,8 @@
-use nalgebra::Vector3;
 use wayfix_estimation_traits::LogWeight;
 use wayfix_gaussian_core::log_sum_exp;
 
 use super::{PixelLikelihoodParams, TileLight};
-use crate::{PixelSums, TileRegion, TiledImage};
+use crate::{PixelSums, TileRegion, TiledImage, frame::RegionStatistics};
 
 /// So many tiles are multiplied before a logarithm: their ratios, at most e⁵⁰ or so, fit a double.
 const N_MULTIPLIED: usize = 8;
@@ -51,11 +50,8 @@ pub(crate) struct TileRegionColor {
     pub(super) color: usize,
     /// Share of the pixels of the tile.
     pub(super) share: f64,
-    pub(super) mean: Vector3<f64>,
-    /// Variance of the pixels about their mean.
-    pub(super) scatter: Vector3<f64>,
-    /// $`-\ln p_{bg}`$ of a pixel on average.
-    background: f64,
+    /// The background of a region that is alone in its tile includes the likelihood ratio of its scatter.
+    pub(super) pixels: RegionStatistics,
 }
 
 /// A light of a tracker, and its shade.
@@ -79,30 +75,21 @@ impl TileLikelihood {
     }
 
     /// Adds the tiles of an image, each with this weight when a light is fitted.
-    pub(crate) fn add_tiles(
+    pub(crate) fn add_tiles<'a>(
         &mut self,
         image: &TiledImage,
-        regions: impl Iterator<Item = TileRegion>,
+        regions: impl Iterator<Item = TileRegion<'a>>,
         weight: f64,
     ) {
         let mut number = None;
         for region in regions {
-            let Some(mean) = region.sums.mean() else { continue };
             if let Some(last) = number.replace(region.tile)
                 && last != region.tile
             {
                 self.end_tile(image, last, weight);
             }
-            let count = region.sums.count() as f64;
-            let scatter = region.sums.variance();
-            let background = region.sums.background_nats() / count;
-            self.regions.push(TileRegionColor {
-                color: region.color,
-                share: count,
-                mean,
-                scatter,
-                background,
-            });
+            let pixels = image.statistics(&region);
+            self.regions.push(TileRegionColor { color: region.color, share: pixels.n_pixels, pixels });
         }
         if let Some(last) = number {
             self.end_tile(image, last, weight);
@@ -115,9 +102,9 @@ impl TileLikelihood {
         self.regions[start..].iter_mut().for_each(|region| region.share /= n_pixels);
         // Several colours scatter about their edge.
         if let [region] = &mut self.regions[start..] {
-            region.background += image.log_ratio_of_scatter(&region.scatter);
+            region.pixels.background += image.log_ratio_of_scatter(number, &region.pixels);
         }
-        let mapped = n_pixels / image.n_pixels(number) as f64;
+        let mapped = n_pixels / image.n_pixels(number);
         self.tiles.push(Tile { end: self.regions.len(), number, mapped, weight });
     }
 
@@ -128,7 +115,7 @@ impl TileLikelihood {
         let mut start = 0;
         for Tile { end, .. } in tiles {
             let regions = &regions[start..*end];
-            let background: f64 = regions.iter().map(|region| region.share * region.background).sum();
+            let background: f64 = regions.iter().map(|region| region.share * region.pixels.background).sum();
             ratios.extend(lights.iter().map(|light| (light.log_density(regions) + background).exp()));
             start = *end;
         }
@@ -195,9 +182,9 @@ impl TileLikelihood {
 
     /// Adds the pixels of each tile to its light, unless it shows something else; `shown` has all colours of the first light, then those of the next. All tiles are in the
     /// light, or each in the more probable one of light and shade.
-    pub(crate) fn show(
+    pub(crate) fn show<'a>(
         &self,
-        regions: impl Iterator<Item = TileRegion>,
+        regions: impl Iterator<Item = TileRegion<'a>>,
         LightOfTiles { light, shade, n_lights }: LightOfTiles,
         params: &PixelLikelihoodParams,
         shown: &mut [PixelSums],
@@ -214,7 +201,7 @@ impl TileLikelihood {
             if let Some((light, _)) = best
                 && let Some(sums) = shown.get_mut(light * n_colors + region.color)
             {
-                sums.add(&region.sums);
+                sums.add(&region.sums());
             }
         }
     }
@@ -236,7 +223,7 @@ fn log_product(mut factors: impl Iterator<Item = f64>) -> LogWeight {
 #[cfg(test)]
 pub(super) mod tests {
     use approx::assert_abs_diff_eq;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::{DMatrix, DVector, Vector3};
     use wayfix_gaussian_core::Gaussian;
 
     use super::*;

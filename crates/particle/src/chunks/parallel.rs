@@ -1,20 +1,21 @@
 use rayon::prelude::*;
 
-use super::{CHUNK, sequential};
+use super::sequential;
 
 /// As the sequential form, with chunks shared out over the threads of the current pool.
 pub(crate) fn map_chunks<X: Send, T: Send>(
+    size: usize,
     states: &mut [X],
     numbers: &mut [f64],
     job: impl Fn(usize, &mut [X], &mut [f64]) -> T + Sync,
 ) -> Vec<T> {
-    if states.len() <= CHUNK {
+    if states.len() <= size {
         // Waking another thread costs more than it helps.
-        return sequential::map_chunks(states, numbers, job);
+        return sequential::map_chunks(size, states, numbers, job);
     }
     states
-        .par_chunks_mut(CHUNK)
-        .zip(numbers.par_chunks_mut(CHUNK))
+        .par_chunks_mut(size)
+        .zip(numbers.par_chunks_mut(size))
         .enumerate()
         .map(|(chunk, (states, numbers))| job(chunk, states, numbers))
         .collect()
@@ -22,7 +23,7 @@ pub(crate) fn map_chunks<X: Send, T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::CHUNK, *};
 
     #[test]
     fn both_forms_do_the_same_jobs_in_the_same_order() {
@@ -37,7 +38,8 @@ mod tests {
             let states: Vec<u64> = (0..n as u64).collect();
             let (mut a, mut b) = (states.clone(), states);
             let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
-            assert_eq!(map_chunks(&mut a, &mut x, job), sequential::map_chunks(&mut b, &mut y, job));
+            let results = map_chunks(CHUNK, &mut a, &mut x, job);
+            assert_eq!(results, sequential::map_chunks(CHUNK, &mut b, &mut y, job));
             assert_eq!((a, x), (b, y));
         }
     }

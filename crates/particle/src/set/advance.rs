@@ -4,7 +4,7 @@ use wayfix_estimation_traits::LogWeight;
 use super::{ParticleSet, reweigh::add, workspace::Workspace};
 use crate::{
     ParticleError,
-    chunks::{ParticleChunkRng, Streams, map_chunks},
+    chunks::{CHUNK, ParticleChunkRng, Streams, map_chunks},
     memory::{reserve, resize},
 };
 
@@ -35,7 +35,7 @@ impl<X: Clone + Send> ParticleSet<X> {
         reserve(advanced, states.len())?;
         advanced.extend_from_slice(states);
         resize(weighed, states.len(), 0.0)?;
-        let stepped: Result<(), E> = map_chunks(advanced, weighed, |chunk, states, increments| {
+        let stepped: Result<(), E> = map_chunks(CHUNK, advanced, weighed, |chunk, states, increments| {
             let (mut prepared, mut rng) = (prepare(), streams.stream(chunk));
             for (state, increment) in states.iter_mut().zip(increments) {
                 *increment = step(&mut prepared, state, &mut rng)?;

@@ -2,7 +2,10 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::{ParticleSet, normalize::normalize};
 use crate::{
-    NormalizationReport, ParticleError, chunks::map_chunks, memory::resize, weights::check_log_weights,
+    NormalizationReport, ParticleError,
+    chunks::{CHUNK, map_chunks},
+    memory::resize,
+    weights::check_log_weights,
 };
 
 impl<X: Send> ParticleSet<X> {
@@ -71,7 +74,7 @@ impl<X: Send> ParticleSet<X> {
     ) -> Result<(), ParticleError> {
         let weighed = &mut self.workspace.log_weights;
         resize(weighed, self.states.len(), 0.0)?;
-        map_chunks(&mut self.states, weighed, |_, states, weighed| {
+        map_chunks(CHUNK, &mut self.states, weighed, |_, states, weighed| {
             let mut prepared = prepare();
             for (state, log_weight) in states.iter().zip(weighed) {
                 *log_weight = log_likelihood(&mut prepared, state);

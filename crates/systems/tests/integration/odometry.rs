@@ -83,10 +83,11 @@ fn cml(records: Vec<Record>) -> Outcome {
     outcome(poses, &mut run.system)
 }
 
-/// Colour localization from near the truth.
+/// Colour localization from near the truth. It searches for no other place: that takes most of the time, and what is asked here is how odometry moves the robot.
 fn color(records: &[Record]) -> Outcome {
     let field = format!("{}/../../fixtures/four-legged-field.toml", env!("CARGO_MANIFEST_DIR"));
-    let params = ColorSystemParams::default();
+    let mut params = ColorSystemParams::default();
+    params.localizer.search.samples_per_place = 0.0;
     let bank = priors::bank(&priors::built_in().expect("priors"), &params).expect("a bank");
     let map = Arc::new(read_map(field.as_ref()).expect("a map"));
     let setup = ColorRunSetup { map, bank, params, start: None, seed: 1 };
@@ -156,7 +157,7 @@ fn log_without_odometry_says_so() {
 
 #[test]
 fn camera_that_hangs_does_not_hold_the_robot() {
-    let mut field = log("color_bright.mcap", 6.0);
+    let mut field = log("color_bright.mcap", 9.0);
     let sound = color(&field);
     let images = field.iter_mut().filter_map(|record| match &mut record.data {
         RecordData::Image(image) => Some(image),

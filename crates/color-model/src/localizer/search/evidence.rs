@@ -89,6 +89,7 @@ impl<T: LightingTracker> Evidence<'_, T> {
     /// Weighs a candidate in its light.
     pub(super) fn weigh(&self, scratch: &mut Scratch, candidate: &mut Candidate, effort: Effort) {
         self.gather(scratch, candidate, effort);
+        scratch.tiles.weigh(&candidate.light.lights);
         candidate.log_evidence =
             self.of_gathered(scratch, &candidate.light, effort.level) + self.log_prior(candidate);
         candidate.log_likelihoods = scratch.of_frames();
@@ -123,7 +124,7 @@ impl<T: LightingTracker> Evidence<'_, T> {
         lights
     }
 
-    /// A light of a tracker, and its shade if any, as the gathered frames show them.
+    /// A light of a tracker, and its shade if any, as the gathered frames show them; weighs the frames in it.
     fn fitted(
         &self,
         scratch: &mut Scratch,
@@ -136,7 +137,9 @@ impl<T: LightingTracker> Evidence<'_, T> {
             Some(beliefs) => scratch.tiles.fit(&beliefs, self.scene.pixels, &noise),
             None => {
                 let new = |at| TileLight::new(&**belief, at, self.scene.pixels, &noise.pixel_color_variance);
-                (lights.map(new).collect::<Result<_, _>>()?, 0.0)
+                let lights: Vec<_> = lights.map(new).collect::<Result<_, _>>()?;
+                scratch.tiles.weigh(&lights);
+                (lights, 0.0)
             }
         };
         Ok(FittedLight { tracker, light, lights, log_density })
@@ -174,12 +177,11 @@ impl<T: LightingTracker> Evidence<'_, T> {
         candidate.trajectory.locations(&self.frames, &self.params.camera_pose_noise)
     }
 
-    /// The evidence of the gathered frames in a light. Each frame may be hidden, with probability $`h`$, and counts the share $`γ_k`$ that it adds to the frame before:
+    /// The evidence of the gathered frames, weighed in a light. Each frame may be hidden, with probability $`h`$, and counts the share $`γ_k`$ that it adds to the frame before:
     /// $`\ln π_j \prod_k [(1 - h)\, p(z_k | x_k, θ_j) + h]^{γ_k}`$.
     fn of_gathered(&self, scratch: &mut Scratch, fitted: &FittedLight, level: usize) -> LogWeight {
         let Scratch { tiles, gathered, values, .. } = scratch;
         let hidden = self.params.occlusion.share();
-        tiles.weigh(&fitted.lights);
         values.clear();
         let mut start = 0;
         for GatheredFrame { index, end, independent_share } in &*gathered {

@@ -130,15 +130,19 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let params = &self.evidence.params.search;
         let rough = Effort { level: 0, n_frames: 1 };
         let drawn = self.drawn(rng).map(|trajectory| self.candidate(trajectory)).collect();
-        let mut candidates = self.each(drawn, rng, |scratch, candidate, _| {
+        let mut drawn = ParticleSet::new(drawn)?;
+        let fit = |scratch: &mut _, candidate: &mut _, _: &mut _| {
             self.evidence.fit(scratch, candidate, rough, false);
-        })?;
+        };
+        drawn.propagate_with(|| self.evidence.scratch(), fit, rng);
+        let mut candidates = drawn.states().to_vec();
         candidates.extend(known.iter().map(|at| self.known(at)));
         retain_distant(&mut candidates, params.n_refined_trajectories, self.peak_width());
         for round in 0..N_ROUNDS {
             let n_frames = if round + 1 < N_ROUNDS { 2 << round } else { self.evidence.frames.len() };
             let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames };
-            candidates = self.each(candidates, rng, |scratch, candidate, rng| {
+            let mut set = ParticleSet::new(candidates)?;
+            let improve = |scratch: &mut _, candidate: &mut Candidate, rng: &mut _| {
                 self.evidence.fit(scratch, candidate, effort, true);
                 if candidate.known.is_some() && effort.n_frames < self.evidence.frames.len() {
                     return; // The filter estimates it from all frames: a part of them would give a wrong pose.
@@ -148,7 +152,9 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
                     self.refine(scratch, candidate, (effort, at), rng);
                 }
                 self.evidence.fit(scratch, candidate, effort, true);
-            })?;
+            };
+            set.propagate_each(|| self.evidence.scratch(), improve, rng);
+            candidates = set.states().to_vec();
             let n_kept = params.n_refined_trajectories >> (2 * (round + 1)).min(2 * N_ROUNDS - 2);
             retain_distant(&mut candidates, n_kept, self.peak_width());
         }
@@ -297,17 +303,5 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             evidence: self.evidence.of_tiles(candidate),
             is_present: candidate.known.is_some(),
         })
-    }
-
-    /// Does `job` to every candidate, each with the random stream of its chunk.
-    fn each<R: Rng + ?Sized>(
-        &self,
-        candidates: Vec<Candidate>,
-        rng: &mut R,
-        job: impl Fn(&mut Scratch, &mut Candidate, &mut ParticleChunkRng) + Sync,
-    ) -> Result<Vec<Candidate>, ColorModelError> {
-        let mut set = ParticleSet::new(candidates)?;
-        set.propagate_with(|| self.evidence.scratch(), job, rng);
-        Ok(set.states().to_vec())
     }
 }
