@@ -1,4 +1,4 @@
-use wayfix_sensor_log::Record;
+use wayfix_sensor_log::{Record, RecordData};
 
 use crate::EventCounts;
 
@@ -14,6 +14,13 @@ pub trait System {
     /// # Errors
     /// Returns the reason if the record is rejected; the system state is unchanged.
     fn take(&mut self, record: &Record) -> Result<(), String>;
+    /// Whether the pose at the stamp of this record matters. [`drive`](crate::drive) cuts an increment of odometry there, as motion between its stamps is even.
+    fn cuts_odometry(_data: &RecordData) -> bool
+    where
+        Self: Sized,
+    {
+        false
+    }
     /// Processes data that waits for a later record, at the end of the log.
     ///
     /// # Errors

@@ -52,7 +52,7 @@ pub struct GlobalSearchParams {
     /// Number of frames that are kept for a search. The robot is searched for after 1, 2, 4, … frames; up to this number a search replaces
     /// the place, later it proposes others. Default 16.
     pub n_buffered_frames: usize,
-    /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad; 0 never searches. Default 1.
+    /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad, or for each peak of the likelihood near a known start; 0 never searches. Default 1.
     pub samples_per_place: f64,
     /// Number of trajectories that are refined at first; a quarter of them is kept after each of three rounds. Default 800.
     pub n_refined_trajectories: usize,

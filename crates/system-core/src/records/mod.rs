@@ -1,5 +1,6 @@
 //! Checks of the records of a log before a filter takes them, and the events that count what is refused.
 
+mod cut_odometry;
 mod events;
 mod heading_sign;
 mod held_velocity;
@@ -11,6 +12,7 @@ mod overlap;
 mod overview;
 mod plausible_increment;
 
+pub(crate) use cut_odometry::CutOdometry;
 pub use events::{EventCounts, RefusedRecord};
 pub use heading_sign::HeadingSignTest;
 pub use held_velocity::{HeldVelocity, HeldVelocityMotion, MAX_SPEED, VELOCITY_TIMEOUT, check_velocity};

@@ -261,6 +261,10 @@ impl System for CmlSystem {
         }
     }
 
+    fn cuts_odometry(data: &RecordData) -> bool {
+        matches!(data, RecordData::Image(_))
+    }
+
     fn finish(&mut self) -> Result<(), String> {
         self.finish_measurements();
         Ok(())

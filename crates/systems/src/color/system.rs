@@ -359,6 +359,10 @@ impl System for ColorSystem {
         Ok(())
     }
 
+    fn cuts_odometry(data: &RecordData) -> bool {
+        matches!(data, RecordData::Image(_))
+    }
+
     fn finish(&mut self) -> Result<(), String> {
         if self.second_camera.is_some() && self.events.get("second_camera_image") == 0 {
             let text =

@@ -52,9 +52,30 @@ fn without_increments(records: &[Record]) -> Vec<Record> {
     records.iter().filter(|record| !is_increment(record)).cloned().collect()
 }
 
+/// A slow odometry: every `n`-th increment, with the motion of those before.
+fn slow(records: &[Record], n: usize) -> Vec<Record> {
+    let (mut slow, mut moved, mut n_left) = (Vec::new(), Pose2::identity(), n);
+    for record in records {
+        let RecordData::OdometryIncrement(increment) = &record.data else {
+            slow.push(record.clone());
+            continue;
+        };
+        moved = moved.compose(increment);
+        n_left -= 1;
+        if n_left == 0 {
+            let data = RecordData::OdometryIncrement(std::mem::replace(&mut moved, Pose2::identity()));
+            slow.push(Record { stamp: record.stamp, data });
+            n_left = n;
+        }
+    }
+    slow
+}
+
 /// The estimates of a run, and how often an event happened.
 struct Outcome {
     poses: Vec<Gaussian<Pose2<f64>>>,
+    /// By odometry alone.
+    reckoned: Vec<Pose2<f64>>,
     event: Box<dyn Fn(&str) -> u64>,
 }
 
@@ -64,9 +85,9 @@ impl Outcome {
     }
 }
 
-fn outcome(poses: Vec<Gaussian<Pose2<f64>>>, system: &mut impl System) -> Outcome {
+fn outcome(poses: Vec<Gaussian<Pose2<f64>>>, reckoned: Vec<Pose2<f64>>, system: &mut impl System) -> Outcome {
     let counts = system.events().counts().clone();
-    Outcome { poses, event: Box::new(move |name| counts.get(name).copied().unwrap_or(0)) }
+    Outcome { poses, reckoned, event: Box::new(move |name| counts.get(name).copied().unwrap_or(0)) }
 }
 
 /// Appearance maps on a drive through a store.
@@ -80,7 +101,8 @@ fn cml(records: Vec<Record>) -> Outcome {
     let setup = CmlRunSetup { system, plan: &plan, task, start, params: &params, seed: 1 };
     let mut run = cml::run(setup, |_| {}).expect("usable views");
     let poses = run.system.frames().iter().filter_map(|frame| frame.pose.clone()).collect();
-    outcome(poses, &mut run.system)
+    let reckoned = run.system.frames().iter().filter_map(|frame| frame.odometry).collect();
+    outcome(poses, reckoned, &mut run.system)
 }
 
 /// Colour localization from near the truth. It searches for no other place: that takes most of the time, and what is asked here is how odometry moves the robot.
@@ -93,7 +115,8 @@ fn color(records: &[Record]) -> Outcome {
     let setup = ColorRunSetup { map, bank, params, start: None, seed: 1 };
     let mut run = color::run(records, setup, |_| {}).expect("images");
     let poses = run.system.frames().iter().map(|frame| frame.pose.clone()).collect();
-    outcome(poses, &mut run.system)
+    let reckoned = run.system.frames().iter().filter_map(|frame| frame.odometry).collect();
+    outcome(poses, reckoned, &mut run.system)
 }
 
 const SECOND_SOURCE: &str = "second_odometry_source_ignored";
@@ -123,6 +146,21 @@ fn velocities_move_the_robot_as_increments_do() {
     assert_eq!((by_velocities.event)("no_odometry"), 0);
     let apart = color(&field).last().mean().local(by_velocities.last().mean());
     assert!(apart.xy().norm() < 0.1 && apart.z.abs() < 0.1, "{apart}");
+}
+
+/// Ten images a second, odometry five times a second.
+#[test]
+fn images_between_increments_move_by_their_share() {
+    let field = log("color_bright.mcap", 6.0);
+    let (often, seldom) = (color(&field), color(&slow(&field, 2)));
+    assert_eq!((seldom.event)("record_refused"), 0);
+    // What is behind the last increment does not move.
+    let pairs: Vec<_> = often.reckoned.iter().zip(&seldom.reckoned).take(50).collect();
+    assert_eq!(pairs.len(), 50);
+    for (often, seldom) in pairs {
+        let apart = often.local(seldom);
+        assert!(apart.xy().norm() < 0.02 && apart.z.abs() < 0.03, "{apart}");
+    }
 }
 
 #[test]

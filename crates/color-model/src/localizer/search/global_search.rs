@@ -170,11 +170,11 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         self.cell.z
     }
 
-    /// Trajectories that the start allows. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
+    /// Trajectories that the start allows, as many as it allows cells. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
     fn drawn<'b, R: Rng + ?Sized>(&'b self, rng: &'b mut R) -> impl Iterator<Item = Trajectory> + 'b {
         let Evidence { levels: [coarse, _], start, params, frames, .. } = &self.evidence;
         let counts = self.area.cells(&self.cell);
-        let n_cells: usize = counts.iter().product();
+        let n_cells = start.n_cells(self.area, &self.cell);
         let n = (params.search.samples_per_place * n_cells as f64).ceil() as usize;
         let newest = coarse.images.len() - 1;
         let n_detected = if matches!(start, StartPosePrior::Anywhere) { n / 2 } else { 0 };

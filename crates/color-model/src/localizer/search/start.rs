@@ -93,6 +93,19 @@ impl StartPosePrior {
         }
     }
 
+    /// Number of cells of at most this size in the area; if the start is known, of peaks of the likelihood, as wide as a cell in heading, within three standard deviations.
+    pub(crate) fn n_cells(&self, area: &Area, size: &Vector3<f64>) -> usize {
+        let all = area.cells(size).iter().product();
+        match self {
+            Self::Near(about) => {
+                let variances = about.covariance().diagonal();
+                let sides = variances.map(|variance| (6.0 * variance.sqrt() / size.z).ceil());
+                (sides.map(|n| n.max(1.0)).product() as usize).min(all)
+            }
+            Self::Anywhere => all,
+        }
+    }
+
     /// $`\ln p`$ of a pose, up to a constant.
     pub(crate) fn log_prior(&self, pose: &Pose2<f64>) -> f64 {
         match self {
