@@ -3,7 +3,7 @@ use std::{borrow::Borrow, collections::VecDeque, iter::Enumerate};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use crate::VELOCITY_TIMEOUT;
+use crate::{IncrementPlausibilityCheck, VELOCITY_TIMEOUT};
 
 /// A record of a log, or a part of one.
 pub(crate) enum WholeOrPart<R> {
@@ -28,6 +28,8 @@ impl<R: Borrow<Record>> Borrow<Record> for WholeOrPart<R> {
 pub(crate) struct CutOdometry<R, I> {
     records: Enumerate<I>,
     is_cut_at: fn(&RecordData) -> bool,
+    /// A part of an impossible increment may look possible: it stays whole.
+    plausible: IncrementPlausibilityCheck,
     /// End of the last increment.
     since: Option<Stamp>,
     /// From the first record that waits on.
@@ -38,7 +40,8 @@ pub(crate) struct CutOdometry<R, I> {
 impl<R: Borrow<Record>, I: Iterator<Item = R>> CutOdometry<R, I> {
     pub(crate) fn new(records: I, is_cut_at: fn(&RecordData) -> bool) -> Self {
         let (waiting, ready) = (VecDeque::new(), VecDeque::new());
-        Self { records: records.enumerate(), is_cut_at, since: None, waiting, ready }
+        let plausible = IncrementPlausibilityCheck::default();
+        Self { records: records.enumerate(), is_cut_at, plausible, since: None, waiting, ready }
     }
 
     fn take(&mut self, number: usize, record: R) {
@@ -47,7 +50,8 @@ impl<R: Borrow<Record>, I: Iterator<Item = R>> CutOdometry<R, I> {
             (RecordData::OdometryIncrement(increment), since) => {
                 let (increment, stamp) = (*increment, *stamp);
                 self.since = Some(stamp);
-                match since.filter(|_| !self.waiting.is_empty() && increment.is_finite()) {
+                let is_possible = self.plausible.check(stamp, &increment).is_ok();
+                match since.filter(|_| is_possible && !self.waiting.is_empty()) {
                     Some(since) => self.cut((number, record), (increment, since, stamp)),
                     None => self.pass((number, record)),
                 }
@@ -179,7 +183,9 @@ mod tests {
         unchanged(&[odometry(100, step), look(150), look(1200), odometry(1300, step)]); // a gap
         unchanged(&[odometry(100, step), look(150), look(160)]); // the end
         unchanged(&[odometry(100, step), look(150), odometry(120, step)]); // back in time
-        unchanged(&[odometry(100, step), look(150), odometry(200, Pose2::new(f64::INFINITY, 0.0, 0.0))]);
+        for jump in [f64::INFINITY, 1e4] {
+            unchanged(&[odometry(100, step), look(101), odometry(200, Pose2::new(jump, 0.0, 0.0))]);
+        }
     }
 
     #[test]

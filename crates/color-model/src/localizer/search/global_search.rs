@@ -170,7 +170,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         self.cell.z
     }
 
-    /// Trajectories that the start allows, as many as it allows cells. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
+    /// Trajectories that the start allows, one a cell by default. If that is anywhere: in every cell of a grid, and half as many that show a landmark where a frame does.
     fn drawn<'b, R: Rng + ?Sized>(&'b self, rng: &'b mut R) -> impl Iterator<Item = Trajectory> + 'b {
         let Evidence { levels: [coarse, _], start, params, frames, .. } = &self.evidence;
         let counts = self.area.cells(&self.cell);

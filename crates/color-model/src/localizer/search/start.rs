@@ -93,7 +93,7 @@ impl StartPosePrior {
         }
     }
 
-    /// Number of cells of at most this size in the area; if the start is known, of peaks of the likelihood, as wide as a cell in heading, within three standard deviations.
+    /// Number of cells of at most this size in the area. Near a known start: within three standard deviations, and as wide as a peak of the likelihood, the size in heading.
     pub(crate) fn n_cells(&self, area: &Area, size: &Vector3<f64>) -> usize {
         let all = area.cells(size).iter().product();
         match self {
