@@ -12,6 +12,7 @@
 //! | What moved a robot with a held velocity command? | [`HeldVelocity`] |
 //! | How did a robot move between two times? | [`motion_between`] |
 //! | Is the odometry late? | [`TurnHistory`], [`without_odometry_delay`] |
+//! | Does a camera hang? | [`RepeatedImageCheck`] |
 //! | Is the compass mirrored? | [`HeadingSignTest`] |
 
 mod atomic;
@@ -35,8 +36,8 @@ pub use measurement::map_measurement;
 pub use records::{
     EventCounts, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck, LogOverview,
     LoggedMotion, LoggedOdometry, MAX_SPEED, NamedRecordKind, ODOMETRY, OVERVIEW_HEAD, OdometryRecordKind,
-    RefusedRecord, TurnHistory, VELOCITY_TIMEOUT, check_overlap, check_velocity, motion_between,
-    warn_of_no_odometry, without_odometry_delay,
+    RefusedRecord, RepeatedImageCheck, TurnHistory, VELOCITY_TIMEOUT, check_overlap, check_velocity,
+    motion_between, warn_of_no_odometry, without_odometry_delay,
 };
 pub use robot_drawing::{PathSegmentWriter, ellipse_drawing, write_pose, write_robot};
 pub use system::{MOST_ESTIMATES, System};

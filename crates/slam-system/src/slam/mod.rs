@@ -15,6 +15,7 @@ mod parameter_numbers;
 mod plots;
 mod run;
 mod saved;
+mod saved_map_check;
 mod start;
 mod system;
 

@@ -75,7 +75,7 @@ fn consistency(samples: &[(StampedEstimate, PoseWithTruth)]) -> Option<Consisten
     let samples: Vec<_> = samples.iter().filter_map(nees).collect();
     let band = ChiSquaredBand::for_average(POSE_DIMENSION, 1, 0.95).ok()?;
     Some(ConsistencyPlot {
-        title: "Consistency of the filter".to_owned(),
+        title: "Consistency of the estimate".to_owned(),
         statistic: "NEES (x, y, θ)".to_owned(),
         samples,
         expected: POSE_DIMENSION as f64,

@@ -11,6 +11,7 @@ mod odometry_lag;
 mod overlap;
 mod overview;
 mod plausible_increment;
+mod repeated_image;
 
 pub(crate) use cut_odometry::CutOdometry;
 pub use events::{EventCounts, RefusedRecord};
@@ -23,3 +24,4 @@ pub use odometry_lag::TurnHistory;
 pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap, warn_of_no_odometry};
 pub use overview::{LogOverview, OVERVIEW_HEAD};
 pub use plausible_increment::IncrementPlausibilityCheck;
+pub use repeated_image::RepeatedImageCheck;

@@ -10,7 +10,8 @@ use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, topics};
 use wayfix_system_core::{
-    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, Stopwatch, System, TurnHistory,
+    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, RepeatedImageCheck, Stopwatch, System,
+    TurnHistory,
 };
 
 use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
@@ -29,6 +30,7 @@ pub struct CmlSystem {
     /// Dead-reckoned motion since the first record.
     moved: Pose2<f64>,
     last_view: Option<PanoramaDescriptor>,
+    repeated: RepeatedImageCheck,
     /// Turns between the views, by odometry and by the views alone.
     turns: TurnHistory,
     frames: Decimated<CmlViewResult>,
@@ -90,6 +92,7 @@ impl CmlSystem {
             dead_reckoning: None,
             moved: Pose2::identity(),
             last_view: None,
+            repeated: RepeatedImageCheck::default(),
             turns: TurnHistory::default(),
             frames: Decimated::new(MOST_ESTIMATES),
             latest: None,
@@ -169,6 +172,7 @@ impl CmlSystem {
         self.localizer.predict(increment).map_err(|error| error.to_string())?;
         self.dead_reckoning = self.dead_reckoning.map(|pose| pose.compose(increment));
         self.moved = self.moved.compose(increment);
+        self.repeated.move_by(increment);
         Ok(())
     }
 
@@ -189,6 +193,8 @@ impl CmlSystem {
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
         let panorama_took = Stopwatch::start();
         let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
+        let n_columns = self.reader.size().map_or(0, |(n_columns, _)| n_columns);
+        self.repeated.check(image, n_columns as f64 / std::f64::consts::TAU)?;
         let describing = panorama_took.elapsed();
         let seen_turn = self.last_view.replace(view.clone()).map(|last| view.compare(&last).rotation);
         self.turns.push(stamp, self.moved, seen_turn);

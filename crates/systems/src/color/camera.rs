@@ -2,8 +2,9 @@ use std::iter::Peekable;
 
 use wayfix_color_map::{PinholeCamera, RenderError};
 use wayfix_color_model::YuvImage;
-use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
+use wayfix_system_core::RepeatedImageCheck;
 
 use super::ColorSystemParams;
 
@@ -12,13 +13,7 @@ use super::ColorSystemParams;
 pub(super) struct LoggedCamera {
     info: Option<CameraInfo>,
     mount: Option<Pose3<f64>>,
-    last: Option<LastImage>,
-}
-
-/// An image that differs from the one before, and the motion since.
-struct LastImage {
-    image: EncodedImage,
-    moved: Pose2<f64>,
+    repeated: RepeatedImageCheck,
 }
 
 /// An image with the camera that took it.
@@ -39,9 +34,7 @@ impl LoggedCamera {
     }
 
     pub(super) fn move_by(&mut self, increment: &Pose2<f64>) {
-        if let Some(LastImage { moved, .. }) = &mut self.last {
-            *moved = moved.compose(increment);
-        }
+        self.repeated.move_by(increment);
     }
 
     /// Where the camera is on the robot, once a record has said so.
@@ -58,27 +51,14 @@ impl LoggedCamera {
         let camera = self.info.ok_or("no camera info before this image")?;
         let mount = self.mount.ok_or("no camera mount before this image")?;
         let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
-        self.check_is_new(image, &decoded.pixels, camera.fx)?;
+        // A covered camera, or one without light, sees the same everywhere.
+        let is_blank = decoded.pixels.iter().all(|value| Some(value) == decoded.pixels.first());
+        if !is_blank {
+            self.repeated.check(image, camera.fx)?;
+        }
         let image = YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, params.yuv_standard)
             .map_err(|error| error.to_string())?;
         Ok(PlacedImage { camera, mount, image })
-    }
-
-    /// Refuses an image that repeats the last one although the robot has turned by more than a pixel, or moved as far as turns a view at 1 m so.
-    fn check_is_new(&mut self, image: &EncodedImage, pixels: &[u8], fx: f64) -> Result<(), String> {
-        let Some(LastImage { moved, .. }) = self.last.as_ref().filter(|last| last.image == *image) else {
-            self.last = Some(LastImage { image: image.clone(), moved: Pose2::identity() });
-            return Ok(());
-        };
-        let shift = (moved.translation.norm() + moved.heading().abs()) * fx;
-        // A covered camera, or one without light, sees the same everywhere.
-        let is_blank = pixels.iter().max().zip(pixels.iter().min()).is_none_or(|(most, least)| most == least);
-        if shift > 1.0 && !is_blank {
-            return Err(format!(
-                "the image repeats the one before, although odometry has moved it by some {shift:.0} pixels: the camera hangs"
-            ));
-        }
-        Ok(())
     }
 }
 

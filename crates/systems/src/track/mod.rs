@@ -19,6 +19,7 @@
 mod error;
 mod figures;
 mod frame_tracker;
+mod frozen_film;
 mod learn_head;
 mod method;
 mod output;

@@ -9,7 +9,7 @@ use wayfix_visual_tracking::{
 
 use super::{
     BoxScore, FrameTracker, InitialTargetRegion, LostStatusScore, TargetColorDistribution, TargetTruth,
-    TrackParams, TrackSystemError, TrackingMethod, TrueBoxes,
+    TrackParams, TrackSystemError, TrackingMethod, TrueBoxes, frozen_film::FrozenFilmCheck,
 };
 
 /// A tracker that processes the images of a log.
@@ -29,6 +29,7 @@ pub struct TrackSystem {
     totals: Totals,
     /// The first frame with an estimate, if a detector found it, and its overlap with the true box.
     detected: Option<(usize, Option<f64>)>,
+    film: FrozenFilmCheck,
     events: EventCounts,
 }
 
@@ -99,6 +100,7 @@ impl TrackSystem {
             status_score: LostStatusScore::default(),
             totals: Totals::default(),
             detected: None,
+            film: FrozenFilmCheck::default(),
             events,
         }
     }
@@ -169,6 +171,8 @@ impl TrackSystem {
         }
         match self.follow(image) {
             Ok(Some((picture, target, step))) => {
+                let is_repeated = self.last.as_ref().is_some_and(|last| last.picture == picture);
+                self.film.check(stamp, is_repeated, &mut self.events);
                 self.account(stamp, picture, target, step);
                 Ok(())
             }
