@@ -1,10 +1,7 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use wayfix_sensor_log::{LogFormat, read_text};
-
-use super::renamed::{present_name, replacement};
+use wayfix_sensor_log::LogFormat;
 
 /// A format of a log by its name; for a mistyped name the error gives the most similar one.
 pub(super) fn log_format() -> impl TypedValueParser<Value = LogFormat> {
@@ -23,60 +20,4 @@ pub(super) struct Topics {
 /// Name of the input for the report: the log or its files.
 pub(super) fn name_of(log: &[PathBuf]) -> String {
     log.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
-}
-
-/// Parameters of a system from a TOML file.
-///
-/// The error names the file, the template of the system, and the key, or the line where the text is not valid TOML.
-pub(super) fn read_toml<P>(
-    path: &Path,
-    system: &str,
-    parse: impl Fn(&str) -> Result<P, toml::de::Error>,
-) -> Result<P> {
-    let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
-    let read = parse(&text).map_err(|error| {
-        anyhow::anyhow!("{}{}", error.to_string().trim_end(), hint(error.message()).unwrap_or_default())
-    });
-    let path = path.display();
-    read.with_context(|| {
-        format!("parameters in {path} are not usable (`wayfix params {system}` lists those of this run)")
-    })
-}
-
-/// The present name of an unknown key, or the most similar name, from a message "unknown field `a`, expected one of `b`, `c`".
-fn hint(message: &str) -> Option<String> {
-    let names = message.strip_prefix("unknown ").map(|rest| rest.split('`').skip(1).step_by(2))?;
-    let mut names = names.map(|name| name.trim());
-    let unknown = names.next()?;
-    let allowed: Vec<&str> = names.collect();
-    if let Some(name) = present_name(unknown, allowed.iter().copied()) {
-        return Some(format!("\n`{unknown}` is called `{name}` now"));
-    }
-    if let Some(what) = replacement(unknown, allowed.iter().copied()) {
-        return Some(format!("\n`{unknown}` was replaced: {what}"));
-    }
-    let likeness = |name: &str| strsim::jaro_winkler(unknown, name);
-    let alike = allowed.into_iter().filter(|name| likeness(name) > ALIKE);
-    alike.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map(|name| format!("\ndid you mean `{name}`?"))
-}
-
-/// Minimum similarity of a mistyped word: one or two letters wrong, swapped or missing.
-const ALIKE: f64 = 0.8;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slip_is_recognized_and_nonsense_is_not() {
-        let message =
-            "unknown field `gate_probabilty`, expected one of `outliers`, `gate_probability`, `order`";
-        assert_eq!(hint(message).as_deref(), Some("\ndid you mean `gate_probability`?"));
-        assert_eq!(hint("unknown field `zzz`, expected one of `outliers`, `order`"), None);
-        let variant = hint("unknown variant `jcb`, expected one of `known`, `nn`, `jcbb`");
-        assert_eq!(variant.as_deref(), Some("\ndid you mean `jcbb`?"));
-        let old = hint("unknown field `looks`, expected one of `keyframes`, `lines`");
-        assert_eq!(old.as_deref(), Some("\n`looks` is called `keyframes` now"));
-        assert_eq!(hint("invalid type: string \"x\", expected f64"), None);
-    }
 }

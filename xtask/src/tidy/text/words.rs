@@ -20,7 +20,7 @@ const WORDS: [(&str, &str); 14] = [
     (concat!("last", "_look"), "keyframe"),
 ];
 /// Files that list old names beside the new ones.
-const OLD_NAMES: [&str; 2] = ["CHANGELOG.md", "crates/wayfix/src/cli/renamed.rs"];
+const OLD_NAMES: [&str; 2] = ["CHANGELOG.md", "crates/wayfix/src/cli/parameter_file/renamed.rs"];
 
 pub(in crate::tidy) fn check(sources: &[Source]) -> Vec<Finding> {
     let is_checked =

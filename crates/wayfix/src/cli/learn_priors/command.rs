@@ -10,7 +10,7 @@ use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_systems::color::{ColorSystemParams, priors, read_map};
 
 use super::{
-    super::input::read_toml,
+    super::parameter_file::read_toml,
     labelled_images::{LabelledImage, LabelledImages},
     picture::picture,
     summary,

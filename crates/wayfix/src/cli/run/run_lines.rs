@@ -10,8 +10,9 @@ use wayfix_systems::lines::{self, LineEstimateRecorder, LineExtractionSystem};
 
 use super::super::{
     common::Common,
-    input::{Topics, log_format, name_of, read_toml},
+    input::{Topics, log_format, name_of},
     outputs::Outputs,
+    parameter_file::read_toml,
     read_problems::add_read_problems,
 };
 use super::interrupt;

@@ -21,8 +21,9 @@ use wayfix_system_core::{RunStep, Stopwatch};
 
 use super::super::{
     common::Common,
-    input::{Topics, name_of, read_toml},
+    input::{Topics, name_of},
     outputs::Outputs,
+    parameter_file::read_toml,
     read_problems::{add_read_problems, read_all, read_overview, whole},
     truth::TruthFile,
 };

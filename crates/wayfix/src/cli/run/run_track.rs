@@ -17,7 +17,9 @@ use wayfix_systems::track::{
 };
 use wayfix_visual_tracking::{BoundingBox, HeadDetector};
 
-use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
+use super::super::{
+    common::Common, outputs::Outputs, parameter_file::read_toml, read_problems::add_read_problems,
+};
 use super::interrupt;
 use crate::commented::commented;
 

@@ -16,7 +16,7 @@ use wayfix_systems::views::{
 };
 use wayfix_table_log::{MoveTable, MovedFrameFolder};
 
-use super::super::{common::Common, input::read_toml, outputs::Outputs};
+use super::super::{common::Common, outputs::Outputs, parameter_file::read_toml};
 use super::interrupt;
 use crate::commented::commented;
 

@@ -10,7 +10,7 @@ use wayfix_slam_system::{
 use wayfix_system_core::{LogOverview, settings::from_toml, without_odometry_delay};
 
 use super::{
-    super::input::read_toml,
+    super::parameter_file::read_toml,
     run_slam::{self, EstimatorName},
 };
 use crate::commented::commented;

@@ -24,8 +24,8 @@ pub(in crate::cli) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 
 use super::super::{
-    input::read_toml,
     outputs::Outputs,
+    parameter_file::read_toml,
     read_problems::{add_read_problems, read_all, read_overview, whole},
 };
 use super::interrupt;
