@@ -1,17 +1,30 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use anyhow::Result;
 use rayon::prelude::*;
 use wayfix_evaluation::errors::MeanInterval;
 use wayfix_evaluation::report::Metric;
+use wayfix_evaluation::terminal::print_message;
 
 use super::CmlExperimentSetup;
 
-/// Does an experiment with every seed, side by side; the results in the order of the seeds.
+/// Does an experiment with every seed, side by side; the results in the order of the seeds. Says when each is done: one may take minutes.
 pub(super) fn over_seeds<T: Send>(
     setup: &CmlExperimentSetup,
     seed: u64,
     one: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    setup.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(&one).collect()
+    let seeds: Vec<u64> = setup.seeds(seed).collect();
+    let (n_seeds, n_done) = (seeds.len(), AtomicUsize::new(0));
+    let told = |seed: u64| {
+        let result = one(seed)?;
+        let n_done = 1 + n_done.fetch_add(1, Ordering::Relaxed);
+        if n_seeds > 1 {
+            print_message(format!("{n_done} of {n_seeds} seeds done"));
+        }
+        Ok(result)
+    };
+    seeds.into_par_iter().map(told).collect()
 }
 
 /// The mean over seeds, and, from two on, half the width of its 95 % interval.

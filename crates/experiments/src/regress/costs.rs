@@ -35,15 +35,14 @@ impl EstimatedTime {
     pub(crate) fn told(&self, n_threads: usize) -> String {
         let Self { n_runs, seconds, n_unknown } = *self;
         let minutes = seconds / n_threads.max(1) as f64 / 60.0;
+        let known = format!("about {minutes:.1} minutes on {n_threads} threads");
         let time = match n_unknown {
             _ if n_runs == 0 => "nothing to do".to_owned(),
-            _ if n_unknown == n_runs => "how long they take is not known".to_owned(),
-            0 => format!("about {minutes:.1} minutes on {n_threads} threads"),
-            n => {
-                format!("about {minutes:.1} minutes on {n_threads} threads, and {n} of them nobody has timed")
-            }
+            0 => known,
+            n if n == n_runs => "not timed yet".to_owned(),
+            n => format!("{known}, {n} of them not timed yet"),
         };
-        format!("{n_runs} runs, {time}")
+        format!("{n_runs} {}, {time}", if n_runs == 1 { "run" } else { "runs" })
     }
 }
 
