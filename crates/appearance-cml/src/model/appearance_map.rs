@@ -161,9 +161,8 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             if n_anywhere > 0 { self.search.nearest_within(view, n_anywhere, limit) } else { Vec::new() };
         for component in belief {
             let radius = self.search_radius(component, params, gate).min(self.scale.far_distance());
-            matches.extend(self.compare_within(view, component, radius));
+            matches.extend(self.search.within_of(view, &self.near(component, radius), limit));
         }
-        matches.retain(|m| m.comparison.distance < limit);
         matches.sort_by_key(|m| m.id);
         matches.dedup_by_key(|m| m.id);
         self.places_of(matches, limit)
@@ -184,17 +183,9 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         matches.iter().flat_map(places).collect()
     }
 
-    /// Compares the view with all references within `radius` of a belief.
-    pub(super) fn compare_within(
-        &self,
-        view: &D,
-        near: &Gaussian<Pose2<f64>>,
-        radius: f64,
-    ) -> Vec<ReferenceMatch> {
-        let compare = |id: ReferenceId| {
-            self.search.get(id).map(|reference| ReferenceMatch { id, comparison: view.compare(reference) })
-        };
-        self.grid.near(&near.mean().translation, radius).into_iter().filter_map(compare).collect()
+    /// All references with a place that may be within `radius` of a belief.
+    pub(super) fn near(&self, belief: &Gaussian<Pose2<f64>>, radius: f64) -> Vec<ReferenceId> {
+        self.grid.near(&belief.mean().translation, radius)
     }
 
     /// Distance from the mean of a belief at which references may match, m: the match radius, and the error of the belief within the gate.

@@ -64,16 +64,16 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         let is_there = |place: &PlaceComponent| {
             distance(place, at) <= radius && own.hypot(sigma(&place.gaussian)) <= radius
         };
-        let (mut n_near, mut is_recognized) = (0, false);
-        for matched in self.compare_within(view, hypothesis, radius) {
-            let Some(reference) = self.reference(matched.id) else { continue };
-            let Some(place) = reference.places.iter().find(|place| is_there(place)) else { continue };
+        let place = |id: ReferenceId| self.reference(id)?.places.iter().find(|place| is_there(place));
+        let near: Vec<ReferenceId> =
+            self.near(hypothesis, radius).into_iter().filter(|id| place(*id).is_some()).collect();
+        let is_recognized = self.search().within_of(view, &near, nearest_far).iter().any(|matched| {
+            let Some(place) = place(matched.id) else { return false };
             let heading = place.gaussian.mean().heading() + matched.comparison.rotation;
-            let is_turned = wrap_angle(heading - at.heading()).abs() > MAX_TURN + 2.0 * hypothesis.sigmas().z;
-            is_recognized |= matched.comparison.distance < nearest_far && !is_turned;
-            n_near += 1;
-        }
-        let chance = f64::from(n_near) / f64::from(n_near + n_far);
+            wrap_angle(heading - at.heading()).abs() <= MAX_TURN + 2.0 * hypothesis.sigmas().z
+        });
+        let n_near = near.len();
+        let chance = n_near as f64 / (n_near + n_far) as f64;
         (n_near > 0 && n_far > 0).then_some(PlaceTest { is_recognized, chance })
     }
 }

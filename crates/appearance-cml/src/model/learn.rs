@@ -50,19 +50,17 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
         let radius = self.search_radius(pose, params, gate).min(self.scale().far_distance());
-        let compared = self.compare_within(&view, pose, radius);
-        let (here, missed): (Vec<ReferenceMatch>, Vec<ReferenceMatch>) =
-            compared.into_iter().partition(|m| m.comparison.distance < limit);
+        let here = self.near(pose, radius);
         let seen = match params.place_update {
             PlaceUpdateRule::Pose => self.search().within(&view, limit),
-            PlaceUpdateRule::Residual => here,
+            PlaceUpdateRule::Residual => self.search().within_of(&view, &here, limit),
         };
         let novel = self.is_novel(&seen, limit, params);
         let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params, gate))?;
         self.weigh_seen(&mut changed, &seen, pose, (limit, params, gate))?;
         if params.forgetting_mode == ForgettingMode::Active {
-            let elsewhere = missed.iter().filter(|m| !changed.contains_key(&m.id)).map(|m| m.id).collect();
-            self.weigh_missed(&mut changed, elsewhere, pose, params);
+            let missed = here.into_iter().filter(|id| !changed.contains_key(id)).collect();
+            self.weigh_missed(&mut changed, missed, pose, params);
         }
         let matched = seen.len();
         let inserted = if novel { Some(self.insert(view, first_seen(pose, params))?) } else { None };

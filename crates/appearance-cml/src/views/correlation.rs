@@ -71,18 +71,20 @@ impl Correlation<'_> {
     }
 
     fn largest_curvature(&self) -> f64 {
-        let of = |(k, (re, im)): (usize, &(f64, f64))| ((k + 1) * (k + 1)) as f64 * re.hypot(*im);
+        let of =
+            |(k, (re, im)): (usize, &(f64, f64))| ((k + 1) * (k + 1)) as f64 * (re * re + im * im).sqrt();
         self.harmonics.iter().enumerate().map(of).sum()
     }
 
     /// Climbs from a peak of the grid; never ends lower, nor beyond the neighbours.
     fn refined(&self, start: f64, value: f64, step: f64) -> (f64, f64) {
         let mut best = (start, value);
-        let mut angle = start;
+        let (mut angle, mut derivatives) = (start, self.derivatives(start));
         for _ in 0..NEWTON_STEPS {
-            let [_, slope, curvature] = self.derivatives(angle);
+            let [_, slope, curvature] = derivatives;
             angle = (angle - slope / curvature).clamp(start - step, start + step);
-            let [value, ..] = self.derivatives(angle);
+            derivatives = self.derivatives(angle);
+            let [value, ..] = derivatives;
             // Written so that a curvature of 0 ends it, too.
             if !(curvature < 0.0 && value > best.1) {
                 break;
