@@ -66,6 +66,6 @@ mod tests {
         assert_eq!(line("contour.n_samples = 50\ncontour = { n_samples = 'many' }"), None); // no TOML
         assert_eq!(line("\ncontour = { n_samples = 'many' }"), Some(2));
         assert_eq!(line("[contour]\nn_smaples = 5\nn_samples = 'many'"), Some(3)); // the error that is told
-        assert_eq!(line("\n[countour]\n\nn_samples = 50"), Some(2));
+        assert_eq!(line("\n[edges]\n\nn_samples = 50"), Some(2));
     }
 }
