@@ -1,7 +1,7 @@
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Record, RecordData, Stamp, Velocity};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_slam_ekf::MotionStatistics;
 
 use super::{EventCounts, HeldVelocity, IncrementPlausibilityCheck, check_velocity};
@@ -32,7 +32,7 @@ impl OdometryRecordKind {
 /// The motion of a robot by the increments or the velocities of a log.
 ///
 /// If a log records its motion in both kinds, the kind that comes first moves the robot, and the other is counted and ignored. A velocity holds until the
-/// next, at most for the time-out; so does the rest after an increment. The motion after that is unknown. Drives of a car are not followed.
+/// next, at most for the time-out; the motion after that is unknown. Drives of a car are not followed.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{Record, RecordData, Stamp, Velocity};
@@ -52,11 +52,9 @@ pub struct LoggedOdometry {
     velocity_timeout: f64,
     kind: Option<OdometryRecordKind>,
     plausible: IncrementPlausibilityCheck,
-    /// After an increment the robot rests.
     velocity: HeldVelocity,
-    last_increment: Option<Stamp>,
     statistics: MotionStatistics,
-    /// Time since the velocity or the increment expired, s.
+    /// Time since the velocity expired, s.
     unknown_seconds: f64,
 }
 
@@ -72,14 +70,13 @@ pub struct LoggedMotion {
 }
 
 impl LoggedOdometry {
-    /// Odometry whose records hold for at most `velocity_timeout`, s.
+    /// Odometry whose velocities hold for at most `velocity_timeout`, s.
     pub fn new(velocity_timeout: f64) -> Self {
         Self {
             velocity_timeout,
             kind: None,
             plausible: IncrementPlausibilityCheck::default(),
             velocity: HeldVelocity::default(),
-            last_increment: None,
             statistics: MotionStatistics::default(),
             unknown_seconds: 0.0,
         }
@@ -105,11 +102,6 @@ impl LoggedOdometry {
             RecordData::OdometryIncrement(increment) => {
                 self.plausible.check(record.stamp, increment)?;
                 self.kind = kind;
-                if let Some(last) = self.last_increment.replace(record.stamp) {
-                    self.statistics.add(increment, record.stamp.seconds_since(last));
-                }
-                self.velocity.hold(record.stamp, Velocity { linear: 0.0, angular: 0.0 })?;
-                self.unknown_seconds = 0.0;
                 let (unknown_seconds, unknown_covariance) = (0.0, Matrix3::zeros());
                 Ok(Some(LoggedMotion { increment: *increment, unknown_seconds, unknown_covariance }))
             }
@@ -130,17 +122,15 @@ impl LoggedOdometry {
         self.kind
     }
 
-    /// The motion by the velocity that holds, and the time for which it is unknown, from the last call to `stamp`.
+    /// The motion by the velocity that holds, from the last call to `stamp`.
     pub fn advance_to(&mut self, stamp: Stamp, events: &mut EventCounts) -> Option<LoggedMotion> {
         let held = self.velocity.motion_until(stamp, self.velocity_timeout)?;
-        if self.kind == Some(OdometryRecordKind::Velocities) {
-            self.statistics.add(&held.increment, held.seconds);
-        }
+        self.statistics.add(&held.increment, held.seconds);
         if held.unknown_seconds > 0.0 {
             let timeout = self.velocity_timeout;
             events.warn(
                 "motion_unknown",
-                format!("odometry is missing for more than {timeout} s: the motion is unknown there"),
+                format!("velocities are missing for more than {timeout} s: the motion is unknown there"),
             );
         }
         let before = self.statistics.unknown_motion(self.unknown_seconds);

@@ -8,7 +8,7 @@ use wayfix_system_core::VELOCITY_TIMEOUT;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
-    /// A velocity, or the rest after an increment, holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. Default: as in ROS 2 navigation.
     pub velocity_timeout: f64,
     /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,

@@ -226,11 +226,8 @@ impl ColorSystem {
         Ok(())
     }
 
-    /// Applies the velocities that hold until an image. Increments are those between two images, and without any the motion is unknown.
+    /// Applies the velocities that hold until an image.
     fn move_until(&mut self, stamp: Stamp) {
-        if self.odometry.kind() == Some(OdometryRecordKind::Increments) {
-            return;
-        }
         let held = self.odometry.advance_to(stamp, &mut self.events);
         held.iter().for_each(|motion| self.move_by(motion));
     }
