@@ -11,13 +11,20 @@ pub fn from_toml<T: Default + Serialize + DeserializeOwned>(text: &str) -> Resul
 }
 
 /// Returns `defaults` overridden by the values of a TOML text.
+///
+/// # Errors
+/// As for [`from_toml`], with the place in the text.
 pub fn over_defaults<T: Serialize + DeserializeOwned>(
     defaults: &T,
     text: &str,
 ) -> Result<T, toml::de::Error> {
     let mut values = toml::Table::try_from(defaults).map_err(serde::de::Error::custom)?;
     overlay(&mut values, toml::from_str(text)?);
-    values.try_into()
+    // Only the text itself knows the line of what is wrong in it.
+    values.try_into().map_err(|error: toml::de::Error| match toml::from_str::<T>(text) {
+        Err(placed) if placed.message() == error.message() => placed,
+        _ => error,
+    })
 }
 
 /// Writes the values of `upper` over those of `lower`, table by table.

@@ -161,7 +161,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             if n_anywhere > 0 { self.search.nearest_within(view, n_anywhere, limit) } else { Vec::new() };
         for component in belief {
             let radius = self.search_radius(component, params, gate).min(self.scale.far_distance());
-            matches.extend(self.search.within_of(view, &self.near(component, radius), limit));
+            matches.extend(self.search.within_among(view, &self.near(component, radius), limit));
         }
         matches.sort_by_key(|m| m.id);
         matches.dedup_by_key(|m| m.id);

@@ -67,7 +67,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         let place = |id: ReferenceId| self.reference(id)?.places.iter().find(|place| is_there(place));
         let near: Vec<ReferenceId> =
             self.near(hypothesis, radius).into_iter().filter(|id| place(*id).is_some()).collect();
-        let is_recognized = self.search().within_of(view, &near, nearest_far).iter().any(|matched| {
+        let is_recognized = self.search().within_among(view, &near, nearest_far).iter().any(|matched| {
             let Some(place) = place(matched.id) else { return false };
             let heading = place.gaussian.mean().heading() + matched.comparison.rotation;
             wrap_angle(heading - at.heading()).abs() <= MAX_TURN + 2.0 * hypothesis.sigmas().z

@@ -53,7 +53,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         let here = self.near(pose, radius);
         let seen = match params.place_update {
             PlaceUpdateRule::Pose => self.search().within(&view, limit),
-            PlaceUpdateRule::Residual => self.search().within_of(&view, &here, limit),
+            PlaceUpdateRule::Residual => self.search().within_among(&view, &here, limit),
         };
         let novel = self.is_novel(&seen, limit, params);
         let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params, gate))?;

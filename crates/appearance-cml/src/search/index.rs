@@ -174,14 +174,18 @@ impl<D: LowerBoundedDistance> ReferenceSearch<D> for AppearanceIndex<D> {
         self.within_counted(view, max_distance).0
     }
 
-    fn within_of(&self, view: &D, ids: &[ReferenceId], max_distance: f64) -> Vec<ReferenceMatch> {
+    fn within_among(&self, view: &D, candidates: &[ReferenceId], max_distance: f64) -> Vec<ReferenceMatch> {
         let probe = view.probe();
         let radius = max_distance + BOUND_SLACK;
         let compare = |id: &ReferenceId| {
             let reference = self.get(*id).filter(|reference| reference.bound(&probe, radius) <= radius)?;
             Some(ReferenceMatch { id: *id, comparison: reference.compare_with(&probe) })
         };
-        ids.iter().filter_map(compare).filter(|found| found.comparison.distance < max_distance).collect()
+        candidates
+            .iter()
+            .filter_map(compare)
+            .filter(|found| found.comparison.distance < max_distance)
+            .collect()
     }
 
     fn nearest(&self, view: &D, n: usize) -> Vec<ReferenceMatch> {

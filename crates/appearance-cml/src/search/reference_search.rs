@@ -42,11 +42,15 @@ pub trait ReferenceSearch<D: ViewDescriptor> {
     /// All references nearer than `max_distance`, the nearest first, by number where they are equally near.
     fn within(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch>;
 
-    /// Those of some references nearer than `max_distance`, in their order.
-    fn within_of(&self, view: &D, ids: &[ReferenceId], max_distance: f64) -> Vec<ReferenceMatch> {
+    /// Those of the candidates that are nearer than `max_distance`, in the order of the candidates; one that is not there is skipped.
+    fn within_among(&self, view: &D, candidates: &[ReferenceId], max_distance: f64) -> Vec<ReferenceMatch> {
         let compare =
             |id: &ReferenceId| Some(ReferenceMatch { id: *id, comparison: view.compare(self.get(*id)?) });
-        ids.iter().filter_map(compare).filter(|found| found.comparison.distance < max_distance).collect()
+        candidates
+            .iter()
+            .filter_map(compare)
+            .filter(|found| found.comparison.distance < max_distance)
+            .collect()
     }
 
     /// The `n` nearest references (all of them where there are fewer), the nearest first, by number where they are equally near.

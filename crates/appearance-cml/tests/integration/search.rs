@@ -75,10 +75,10 @@ fn check(n_references: u32, n_queries: usize, seed: u64) -> usize {
             linear.nearest_within(&view, n, radius),
             "query {query}"
         );
-        let some: Vec<ReferenceId> = (0..n_references).step_by(3).map(ReferenceId).collect();
+        let some: Vec<ReferenceId> = (0..n_references + 3).step_by(3).map(ReferenceId).collect();
         assert_eq!(
-            index.within_of(&view, &some, radius),
-            linear.within_of(&view, &some, radius),
+            index.within_among(&view, &some, radius),
+            linear.within_among(&view, &some, radius),
             "query {query}"
         );
     }

@@ -27,7 +27,7 @@ struct Lapped {
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub(crate) fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let seeds = over_seeds("laps", setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
     metrics.extend(mean_of("error_max_m", "m", &seeds, |lapped| largest(&lapped.course.errors)));

@@ -17,7 +17,7 @@ const N_PEOPLE: usize = 12;
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed.
 pub(crate) fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let seeds = over_seeds("crowded", setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
         let references =

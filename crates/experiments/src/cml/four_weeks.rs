@@ -25,7 +25,7 @@ const COURSES: [&str; 6] =
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub(crate) fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let seeds = over_seeds("four_weeks", setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {
         let of = |courses: &[SimulatedDriveResult; 6], value: fn(&[f64]) -> f64| value(&courses[at].errors);

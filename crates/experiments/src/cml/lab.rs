@@ -22,7 +22,7 @@ const COURSES: [&str; 4] = ["passive", "active", "passive_as_published", "active
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub(crate) fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let seeds = over_seeds("changing_lab", setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {
         for step in STEPS {

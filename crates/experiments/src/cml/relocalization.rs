@@ -114,7 +114,7 @@ fn in_stores(
     run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<SimulatedDriveResult> + Sync,
 ) -> Result<Vec<SimulatedDriveResult>> {
     let stores = CmlExperimentSetup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
-    let courses = over_seeds(&stores, seed, |seed| {
+    let courses = over_seeds("relocalization", &stores, seed, |seed| {
         let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
         let params =
             IndoorDriveParams { robot: robot(seed), n_people: N_PEOPLE, ..IndoorDriveParams::default() };

@@ -8,8 +8,9 @@ use wayfix_evaluation::terminal::print_message;
 
 use super::CmlExperimentSetup;
 
-/// Does an experiment with every seed, side by side; the results in the order of the seeds. Says when each is done: one may take minutes.
+/// Does an experiment with every seed, side by side; the results in the order of the seeds. Says when each is done: one may take minutes; `what` is the experiment.
 pub(super) fn over_seeds<T: Send>(
+    what: &str,
     setup: &CmlExperimentSetup,
     seed: u64,
     one: impl Fn(u64) -> Result<T> + Sync,
@@ -20,7 +21,7 @@ pub(super) fn over_seeds<T: Send>(
         let result = one(seed)?;
         let n_done = 1 + n_done.fetch_add(1, Ordering::Relaxed);
         if n_seeds > 1 {
-            print_message(format!("{n_done} of {n_seeds} seeds done"));
+            print_message(format!("{what}: {n_done} of {n_seeds} worlds done"));
         }
         Ok(result)
     };

@@ -32,7 +32,7 @@ struct Day {
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub(crate) fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
-    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let seeds = over_seeds("three_days", setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for day in 0..N_DAYS {
         let number = day + 1;

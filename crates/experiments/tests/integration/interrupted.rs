@@ -43,7 +43,7 @@ fn a_failing_run_leaves_the_others_and_resume_repeats_it() {
     assert!(whole["error"].is_null() && out.join("index.html").is_file());
 
     let second = call(&["--resume"]);
-    assert!(second.stdout.starts_with("1 runs, ") && second.code == 1, "{}", second.stdout);
+    assert!(second.stdout.starts_with("1 run, ") && second.code == 1, "{}", second.stdout);
     assert_eq!(report()[1]["seconds"], whole["seconds"], "it was not repeated");
     let other = call(&["--resume", "--seed", "2"]);
     assert!(other.code == 1 && other.stderr.contains("another campaign"), "{}", other.stderr);

@@ -13,7 +13,7 @@ pub(super) struct SavedMapCheck {
     n_seen: usize,
 }
 
-/// Number of first observations; the share of the known ones among them is certain to 0.07 (one standard deviation).
+/// Number of first observations of saved and of new landmarks. If they were independent, the share of the saved ones would be certain to 0.07.
 const N_FIRST: usize = 50;
 
 impl SavedMapCheck {
@@ -21,7 +21,7 @@ impl SavedMapCheck {
         Self { saved, n_known: 0, n_seen: 0 }
     }
 
-    /// Takes a scan. After the first ones, says if less than half of the observations fit the map.
+    /// Takes a scan. After the first ones, says if less than half of them fit the map. A new landmark counts once; what is neither known nor new does not.
     pub(super) fn add<Z: Manifold<Scalar = f64>>(
         &mut self,
         report: &UpdateReport<Z>,
@@ -33,12 +33,15 @@ impl SavedMapCheck {
             return;
         }
         for outcome in &report.outcomes {
-            use ObservationOutcome::{Accepted, Ambiguous, Initialized, Rejected, Restarted};
-            let is_seen = matches!(
-                outcome,
-                Accepted { .. } | Ambiguous | Initialized { .. } | Rejected { .. } | Restarted { .. }
-            );
-            let is_known = matches!(outcome, Accepted { landmark, noise_scale, .. } if *noise_scale <= 1.0 && self.saved.contains(landmark));
+            use ObservationOutcome::{Accepted, Initialized, Rejected, Restarted};
+            let (is_seen, is_known) = match outcome {
+                Accepted { landmark, noise_scale, .. } => {
+                    let is_saved = self.saved.contains(landmark);
+                    (is_saved, is_saved && *noise_scale <= 1.0)
+                }
+                Initialized { .. } | Rejected { .. } | Restarted { .. } => (true, false),
+                _ => (false, false),
+            };
             self.n_seen += usize::from(is_seen);
             self.n_known += usize::from(is_known);
         }

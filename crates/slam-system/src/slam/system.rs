@@ -71,7 +71,10 @@ where
         let stamp = Stamp::from_nanoseconds;
         let Self { front_end, mut estimator, .. } = self;
         let (model, params) = (estimator.filter.model().clone(), *estimator.filter.params());
-        let saved = filter.landmarks.iter().map(|landmark| landmark.id).collect();
+        let landmarks = filter.landmarks.iter().map(|landmark| landmark.id);
+        let anchors = filter.anchors.iter().map(|(id, _)| *id);
+        let saved =
+            landmarks.chain(anchors).chain(filter.retired.iter().map(|landmark| landmark.id)).collect();
         estimator.filter = EkfSlam::resume(model, params, filter)?;
         estimator.saved_map = Some(SavedMapCheck::new(saved));
         estimator.association = estimator.association.numbering_from(next_id);

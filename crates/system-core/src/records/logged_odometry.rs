@@ -53,6 +53,7 @@ pub struct LoggedOdometry {
     kind: Option<OdometryRecordKind>,
     plausible: IncrementPlausibilityCheck,
     velocity: HeldVelocity,
+    last_increment: Option<Stamp>,
     statistics: MotionStatistics,
     /// Time since the velocity expired, s.
     unknown_seconds: f64,
@@ -77,6 +78,7 @@ impl LoggedOdometry {
             kind: None,
             plausible: IncrementPlausibilityCheck::default(),
             velocity: HeldVelocity::default(),
+            last_increment: None,
             statistics: MotionStatistics::default(),
             unknown_seconds: 0.0,
         }
@@ -102,6 +104,7 @@ impl LoggedOdometry {
             RecordData::OdometryIncrement(increment) => {
                 self.plausible.check(record.stamp, increment)?;
                 self.kind = kind;
+                self.add_increment(record.stamp, increment, events);
                 let (unknown_seconds, unknown_covariance) = (0.0, Matrix3::zeros());
                 Ok(Some(LoggedMotion { increment: *increment, unknown_seconds, unknown_covariance }))
             }
@@ -115,6 +118,22 @@ impl LoggedOdometry {
             }
             _ => Ok(None),
         }
+    }
+
+    /// Says when the robot has moved in a gap of the increments: farther than at its RMS speed and turn rate until the time-out.
+    fn add_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>, events: &mut EventCounts) {
+        let Some(last) = self.last_increment.replace(stamp) else { return };
+        let (seconds, timeout) = (stamp.seconds_since(last), self.velocity_timeout);
+        let usual = self.statistics.unknown_motion(timeout);
+        let has_moved =
+            increment.translation.norm_squared() > usual.m11 || increment.heading().powi(2) > usual.m33;
+        if seconds > timeout && has_moved {
+            events.warn(
+                "motion_unknown",
+                format!("odometry is missing for more than {timeout} s while the robot moves: what it sees there counts at the pose before"),
+            );
+        }
+        self.statistics.add(increment, seconds);
     }
 
     /// The kind that moves the robot; `None` before the first record.
@@ -141,5 +160,29 @@ impl LoggedOdometry {
             // The direction stays the same: the covariance grows with the square of the time, however often it is asked for.
             unknown_covariance: self.statistics.unknown_motion(self.unknown_seconds) - before,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a second of driving, five seconds without increments, and an increment over that time are said to hold unknown motion.
+    fn is_said(distance: f64) -> bool {
+        let (mut odometry, mut events) = (LoggedOdometry::new(1.0), EventCounts::default());
+        let mut take = |seconds: f64, x: f64| {
+            let data = RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
+            let record = Record { stamp: Stamp::from_seconds(seconds).unwrap(), data };
+            assert!(odometry.take(&record, &mut events).unwrap().is_some());
+        };
+        (0..=10).for_each(|step| take(0.1 * f64::from(step), 0.05));
+        take(6.0, distance);
+        events.get("motion_unknown") == 1
+    }
+
+    #[test]
+    fn motion_in_a_gap_of_the_increments_is_said_and_rest_is_not() {
+        assert!(is_said(2.5));
+        assert!(!is_said(0.05)); // a source that is silent while the robot stands
     }
 }

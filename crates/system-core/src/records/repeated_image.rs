@@ -36,7 +36,7 @@ impl RepeatedImageCheck {
             return Ok(());
         }
         Err(format!(
-            "the image repeats the one before, although odometry has moved it by some {shift:.0} pixels: the camera hangs"
+            "the image repeats the one before, although odometry has moved it by some {shift:.0} pixels: the camera hangs, or the log repeats its images"
         ))
     }
 }

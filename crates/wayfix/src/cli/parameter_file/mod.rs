@@ -1,6 +1,5 @@
 //! Parameters of a run from a file.
 
-mod line;
 mod renamed;
 
 use std::path::Path;
@@ -8,7 +7,6 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use wayfix_sensor_log::read_text;
 
-use line::refused_line;
 use renamed::{present_name, replacement};
 
 /// Parameters of a system from a TOML file.
@@ -21,10 +19,7 @@ pub(super) fn read_toml<P>(
 ) -> Result<P> {
     let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {
-        let message = error.message();
-        let line = if error.span().is_none() { refused_line(&text, message, &parse) } else { None };
-        let line = line.map(|line| format!("line {line}: ")).unwrap_or_default();
-        anyhow::anyhow!("{line}{}{}", error.to_string().trim_end(), hint(message).unwrap_or_default())
+        anyhow::anyhow!("{}{}", error.to_string().trim_end(), hint(error.message()).unwrap_or_default())
     });
     let path = path.display();
     read.with_context(|| {
