@@ -321,10 +321,10 @@ mod tests {
         let error = |text| PointSlamParams::from_toml(text, RobotProfile::Generic).unwrap_err().to_string();
         for (text, named) in [
             ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
-            ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
-            ("sensor = 3", "`sensor`"),
-            ("[filter]\noutlier_rule = 'ignore'", "`filter.outlier_rule`"),
-            ("[filter.confirmation]\nmin_detections = -1", "`filter.confirmation.min_detections`"),
+            ("[sensor]\nrange_sigma = 'far'", "2 | range_sigma = 'far'"),
+            ("sensor = 3", "1 | sensor = 3"),
+            ("[filter]\noutlier_rule = 'ignore'", "2 | outlier_rule = 'ignore'"),
+            ("[filter.confirmation]\nmin_detections = -1", "2 | min_detections = -1"),
             ("[sensor", "line 1"),
         ] {
             assert!(error(text).contains(named), "{text}: {}", error(text));

@@ -10,7 +10,7 @@ use wayfix_slam_ekf::{
 };
 use wayfix_system_core::{EventCounts, MOST_ESTIMATES};
 
-use super::{SlamFollower, saved_map_check::SavedMapCheck};
+use super::SlamFollower;
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +50,6 @@ where
     pub(crate) events: EventCounts,
     /// Given anchors that no observation has matched.
     pub(super) unseen_anchors: BTreeSet<LandmarkId>,
-    /// Of a run that continues with a saved map.
-    pub(super) saved_map: Option<SavedMapCheck>,
     /// Computing time since the last estimate.
     pub(crate) step: Duration,
 }
@@ -77,7 +75,6 @@ where
             longest_step: Duration::ZERO,
             events: EventCounts::default(),
             unseen_anchors: BTreeSet::new(),
-            saved_map: None,
             step: Duration::ZERO,
         }
     }
@@ -121,9 +118,6 @@ where
         if !self.unseen_anchors.is_empty() {
             let seen = seen_landmarks(&report);
             self.unseen_anchors.retain(|anchor| !seen.contains(anchor));
-        }
-        if let Some(check) = &mut self.saved_map {
-            check.add(&report, &mut self.events);
         }
         if let Some(recorder) = &mut self.observability {
             recorder.record(&self.filter, &seen_landmarks(&report));

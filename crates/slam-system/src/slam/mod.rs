@@ -15,7 +15,6 @@ mod parameter_numbers;
 mod plots;
 mod run;
 mod saved;
-mod saved_map_check;
 mod start;
 mod system;
 

@@ -11,7 +11,7 @@ use wayfix_system_core::{EventCounts, HeadingSignTest, System, map_measurement};
 
 use super::{
     AssociationRule, ExternalState, FrontEnd, SavedMapError, SlamEstimator, SlamState, StampedEstimate,
-    carried, saved_map_check::SavedMapCheck,
+    carried,
 };
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -71,12 +71,7 @@ where
         let stamp = Stamp::from_nanoseconds;
         let Self { front_end, mut estimator, .. } = self;
         let (model, params) = (estimator.filter.model().clone(), *estimator.filter.params());
-        let landmarks = filter.landmarks.iter().map(|landmark| landmark.id);
-        let anchors = filter.anchors.iter().map(|(id, _)| *id);
-        let saved =
-            landmarks.chain(anchors).chain(filter.retired.iter().map(|landmark| landmark.id)).collect();
         estimator.filter = EkfSlam::resume(model, params, filter)?;
-        estimator.saved_map = Some(SavedMapCheck::new(saved));
         estimator.association = estimator.association.numbering_from(next_id);
         Ok(Self {
             taken_until: stamp(taken_until),

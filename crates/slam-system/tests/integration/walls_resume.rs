@@ -38,24 +38,6 @@ fn a_resumed_run_goes_on_bit_for_bit() {
 }
 
 #[test]
-fn a_saved_map_of_another_place_is_said() {
-    let (records, params) = (office(1200), WallSlamParams::default());
-    let half = || SavedWallMap::from_bytes(&saved(&records[..600])).unwrap();
-    let is_said = |records: &[Record]| {
-        let mut run = run_on(half(), records, records, &params, None, |_| {}).unwrap();
-        run.events().get("saved_map_not_recognized") == 1
-    };
-    assert!(!is_said(&records));
-    let mut mirrored = records.clone();
-    for record in &mut mirrored {
-        if let RecordData::Scan(scan) = &mut record.data {
-            scan.ranges.reverse();
-        }
-    }
-    assert!(is_said(&mirrored));
-}
-
-#[test]
 fn a_streamed_run_is_that_of_the_kept_log_bit_for_bit() {
     let records = office(600);
     let without_ranges = |record: &Record| match &record.data {

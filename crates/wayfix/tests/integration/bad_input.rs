@@ -199,7 +199,7 @@ fn parameters_that_make_no_sense_are_refused_by_name() {
         ("[sensor]\nrange_sgima = 1", "line 2, column 1"),
         ("colour = 1", "line 1, column 1"),
         ("[sensor]\nrange_sigma = 'small'", "line 2, column 15"),
-        ("[sensor]\nrange_sigma = 'small'", "sensor.range_sigma"),
+        ("[sensor]\nrange_sigma = 'small'", "2 | range_sigma = 'small'"),
         ("association = 'icp'", "association"),
         ("[sensor", "line 1"),
     ] {
