@@ -54,6 +54,8 @@ pub struct LoggedOdometry {
     plausible: IncrementPlausibilityCheck,
     velocity: HeldVelocity,
     last_increment: Option<Stamp>,
+    /// Whether the motion was asked for when the last increment was older than the time-out.
+    is_used_in_gap: bool,
     statistics: MotionStatistics,
     /// Time since the velocity expired, s.
     unknown_seconds: f64,
@@ -79,6 +81,7 @@ impl LoggedOdometry {
             plausible: IncrementPlausibilityCheck::default(),
             velocity: HeldVelocity::default(),
             last_increment: None,
+            is_used_in_gap: false,
             statistics: MotionStatistics::default(),
             unknown_seconds: 0.0,
         }
@@ -120,20 +123,20 @@ impl LoggedOdometry {
         }
     }
 
-    /// Says when the robot has moved in a gap of the increments: farther than at its RMS speed and turn rate until the time-out.
+    /// Says when the robot has moved in a gap of the increments in which its motion was asked for: farther than at its RMS speed and turn rate until the time-out.
     fn add_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>, events: &mut EventCounts) {
         let Some(last) = self.last_increment.replace(stamp) else { return };
-        let (seconds, timeout) = (stamp.seconds_since(last), self.velocity_timeout);
+        let timeout = self.velocity_timeout;
         let usual = self.statistics.unknown_motion(timeout);
         let has_moved =
             increment.translation.norm_squared() > usual.m11 || increment.heading().powi(2) > usual.m33;
-        if seconds > timeout && has_moved {
+        if std::mem::take(&mut self.is_used_in_gap) && has_moved {
             events.warn(
                 "motion_unknown",
-                format!("odometry is missing for more than {timeout} s while the robot moves: what it sees there counts at the pose before"),
+                format!("odometry is missing for more than {timeout} s while the robot moves: the motion is unknown there"),
             );
         }
-        self.statistics.add(increment, seconds);
+        self.statistics.add(increment, stamp.seconds_since(last));
     }
 
     /// The kind that moves the robot; `None` before the first record.
@@ -143,6 +146,8 @@ impl LoggedOdometry {
 
     /// The motion by the velocity that holds, from the last call to `stamp`.
     pub fn advance_to(&mut self, stamp: Stamp, events: &mut EventCounts) -> Option<LoggedMotion> {
+        self.is_used_in_gap |=
+            self.last_increment.is_some_and(|last| stamp.seconds_since(last) > self.velocity_timeout);
         let held = self.velocity.motion_until(stamp, self.velocity_timeout)?;
         self.statistics.add(&held.increment, held.seconds);
         if held.unknown_seconds > 0.0 {
@@ -167,22 +172,28 @@ impl LoggedOdometry {
 mod tests {
     use super::*;
 
-    /// Whether a second of driving, five seconds without increments, and an increment over that time are said to hold unknown motion.
-    fn is_said(distance: f64) -> bool {
+    /// Whether a second of driving, five seconds without increments, with images or without, and an increment over that time are said to hold unknown motion.
+    fn is_said(distance: f64, has_images: bool) -> bool {
         let (mut odometry, mut events) = (LoggedOdometry::new(1.0), EventCounts::default());
-        let mut take = |seconds: f64, x: f64| {
-            let data = RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
-            let record = Record { stamp: Stamp::from_seconds(seconds).unwrap(), data };
-            assert!(odometry.take(&record, &mut events).unwrap().is_some());
+        let stamp = |seconds: f64| Stamp::from_seconds(seconds).unwrap();
+        let increment = |seconds: f64, x: f64| Record {
+            stamp: stamp(seconds),
+            data: RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0)),
         };
-        (0..=10).for_each(|step| take(0.1 * f64::from(step), 0.05));
-        take(6.0, distance);
+        for step in 0..=10 {
+            odometry.take(&increment(0.1 * f64::from(step), 0.05), &mut events).unwrap();
+        }
+        if has_images {
+            assert_eq!(odometry.advance_to(stamp(3.0), &mut events), None);
+        }
+        odometry.take(&increment(6.0, distance), &mut events).unwrap();
         events.get("motion_unknown") == 1
     }
 
     #[test]
     fn motion_in_a_gap_of_the_increments_is_said_and_rest_is_not() {
-        assert!(is_said(2.5));
-        assert!(!is_said(0.05)); // a source that is silent while the robot stands
+        assert!(is_said(2.5, true));
+        assert!(!is_said(2.5, false)); // as slow as the images
+        assert!(!is_said(0.05, true)); // a source that is silent while the robot stands
     }
 }
