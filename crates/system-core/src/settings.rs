@@ -5,7 +5,7 @@ use serde::{Serialize, de::DeserializeOwned};
 /// The default parameters, overridden by the values of a TOML text.
 ///
 /// # Errors
-/// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
+/// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type. It names the line.
 pub fn from_toml<T: Default + Serialize + DeserializeOwned>(text: &str) -> Result<T, toml::de::Error> {
     over_defaults(&T::default(), text)
 }
@@ -13,7 +13,7 @@ pub fn from_toml<T: Default + Serialize + DeserializeOwned>(text: &str) -> Resul
 /// Returns `defaults` overridden by the values of a TOML text.
 ///
 /// # Errors
-/// As for [`from_toml`], with the place in the text.
+/// As for [`from_toml`].
 pub fn over_defaults<T: Serialize + DeserializeOwned>(
     defaults: &T,
     text: &str,

@@ -2,6 +2,17 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::EncodedImage;
 
 /// Finds images of a camera that hangs: each equals the one before, although the robot has moved.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_sensor_log::{EncodedImage, ImageFileFormat};
+/// use wayfix_system_core::RepeatedImageCheck;
+/// let image = EncodedImage { format: ImageFileFormat::Png, bytes: vec![1, 2, 3].into() };
+/// let mut check = RepeatedImageCheck::default();
+/// assert!(check.check(&image, 300.0).is_ok() && check.check(&image, 300.0).is_ok()); // the robot stands
+/// check.move_by(&Pose2::new(0.0, 0.0, 0.1));
+/// assert!(check.check(&image, 300.0).is_err()); // 30 pixels
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct RepeatedImageCheck {
     last: Option<LastImage>,

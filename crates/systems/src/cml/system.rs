@@ -193,7 +193,7 @@ impl CmlSystem {
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
         let panorama_took = Stopwatch::start();
         let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
-        let n_columns = self.reader.size().map_or(0, |(n_columns, _)| n_columns);
+        let (n_columns, _) = self.reader.size().ok_or("a view without a size")?;
         self.repeated.check(image, n_columns as f64 / std::f64::consts::TAU)?;
         let describing = panorama_took.elapsed();
         let seen_turn = self.last_view.replace(view.clone()).map(|last| view.compare(&last).rotation);
