@@ -1,6 +1,6 @@
 use wayfix_gaussian_core::{GaussianError, moment_matched};
 
-use super::{PoseHypothesis, separation_squared};
+use super::PoseHypothesis;
 use crate::{AppearanceMapError, check};
 
 /// How a mixture over poses is kept small.
@@ -31,9 +31,9 @@ impl Default for MixtureReductionParams {
     }
 }
 
-/// Squared Mahalanobis distance below which two components become one: the sum of two equal Gaussians has a single mode up to a
-/// distance of 2σ, which is $`d^2 = 4 σ^2 / 2 σ^2`$.
-const MERGE_DISTANCE: f64 = 2.0;
+/// Bhattacharyya distance below which two components become one. The sum of two Gaussians with the same covariance has a single mode up to a
+/// distance of 2σ, which is $`4 σ^2 / 8 σ^2`$. A narrow component within a wide one is far from it: it is a place that the robot may have recognized.
+const MERGE_DISTANCE: f64 = 0.5;
 
 impl MixtureReductionParams {
     /// Checks the ranges.
@@ -104,9 +104,9 @@ fn nearest_within(
     let mut nearest = None;
     let mut least = reach;
     for (index, other) in kept.iter().enumerate() {
-        let squared = separation_squared(&other.gaussian, &hypothesis.gaussian)?;
-        if squared < least {
-            (nearest, least) = (Some(index), squared);
+        let distance = other.gaussian.bhattacharyya_distance(&hypothesis.gaussian)?;
+        if distance < least {
+            (nearest, least) = (Some(index), distance);
         }
     }
     Ok(nearest)
@@ -120,4 +120,39 @@ fn merge(a: &PoseHypothesis, b: &PoseHypothesis) -> Result<PoseHypothesis, Appea
         gaussian,
         independent: a.independent.min(b.independent),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_abs_diff_eq;
+    use nalgebra::Vector3;
+    use wayfix_estimation_traits::Pose2;
+    use wayfix_gaussian_core::Gaussian;
+
+    use super::*;
+
+    fn at(x: f64, sigma: f64, weight: f64) -> PoseHypothesis {
+        let sigmas = Vector3::new(sigma, sigma, 0.1);
+        PoseHypothesis::new(weight, Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &sigmas).unwrap())
+    }
+
+    fn simplified(hypotheses: &[PoseHypothesis]) -> Vec<PoseHypothesis> {
+        simplify(hypotheses.to_vec(), &MixtureReductionParams::default()).unwrap()
+    }
+
+    #[test]
+    fn two_equals_merge_up_to_two_sigma() {
+        for (distance, n_components) in [(1.9, 1), (2.1, 2)] {
+            let of = simplified(&[at(0.0, 1.0, 1.0), at(distance, 1.0, 1.0)]);
+            assert_eq!(of.len(), n_components, "{distance}");
+        }
+    }
+
+    #[test]
+    fn narrow_component_within_a_wide_one_is_kept() {
+        let of = simplified(&[at(0.0, 3.0, 1.0), at(0.5, 0.3, 0.01)]);
+        assert_eq!(of.len(), 2);
+        assert_abs_diff_eq!(of[1].gaussian.mean().x(), 0.5);
+        assert_abs_diff_eq!(of[0].gaussian.sigmas().x, 3.0);
+    }
 }

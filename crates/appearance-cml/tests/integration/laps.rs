@@ -1,12 +1,14 @@
 //! The whole localizer in a random field.
 
 use crate::common::{Field, FieldView, between, drifting, known, lap};
+use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
     AppearanceLocalizer, AppearanceMap, LocalizerEvent, LocalizerParams, MapLearning, StartPosePrior,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
+use wayfix_gaussian_core::Gaussian;
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
@@ -86,6 +88,24 @@ fn a_taught_map_localizes_within_a_step() {
             // References lie 0.26 m apart, and interpolating between them is to be better than taking the nearest.
             assert!(mean(&errors) < 0.13, "seed {seed}, {learning:?}: {} m", mean(&errors));
         }
+    }
+}
+
+/// The evidence of single views is small against a wide prior, and adds up.
+#[test]
+fn uncertain_robot_is_located_by_successive_views() {
+    for seed in 0..3 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let field = Field::new(&mut rng);
+        let map = taught(&field, &mut rng);
+        let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
+        let off = way()[0].compose(&Pose2::new(2.0, 2.0, 0.0));
+        let start = Gaussian::from_sigmas(off, &Vector3::new(4.0, 4.0, 0.2)).expect("positive sigmas");
+        let mut localizer =
+            Localizer::with_map(params, map, StartPosePrior::Known(start)).expect("valid defaults");
+        let errors = drive(&mut localizer, &field, (0, 20), &mut rng);
+        // As from a known start, within a step of 0.26 m.
+        assert!(errors[19] < 0.26, "seed {seed}: {} m after 5 m", errors[19]);
     }
 }
 
