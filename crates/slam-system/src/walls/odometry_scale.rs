@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scan_match::ScanAlignment;
-use wayfix_system_core::EventCounts;
+use wayfix_system_core::{EventCounts, ODOMETRY_SCALE_TOLERANCE};
 
 /// Motions by scan matching alone as a linear function of those by odometry, from keyframe to keyframe.
 ///
@@ -21,9 +21,6 @@ pub(super) struct OdometryScale {
     squares: [f64; 2],
     variances: [f64; 2],
 }
-
-/// Larger differences are no matter of calibration: an uncalibrated wheeled robot errs by a few percent. [Borenstein & Feng 1996]
-const TOLERANCE: f64 = 0.2;
 
 /// Standard errors that a difference has beyond the tolerance before it is said.
 const N_SIGMAS: f64 = 3.0;
@@ -75,7 +72,7 @@ impl OdometryScale {
         [0, 1].map(|at| {
             let noise_share =
                 if self.squares[at] > 0.0 { self.variances[at] / self.squares[at] } else { 1.0 };
-            (1.0 - TOLERANCE) * (1.0 - noise_share.min(1.0))
+            (1.0 - ODOMETRY_SCALE_TOLERANCE) * (1.0 - noise_share.min(1.0))
         })
     }
 
@@ -94,7 +91,8 @@ impl OdometryScale {
     pub(super) fn warn(&self, events: &mut EventCounts) {
         let Some((estimate, sigmas)) = self.estimate() else { return };
         let [translation, turn] = self.least_scales();
-        let ranges = [(translation, 1.0 + TOLERANCE), (-TOLERANCE, TOLERANCE), (turn, 1.0 + TOLERANCE)];
+        let most = ODOMETRY_SCALE_TOLERANCE;
+        let ranges = [(translation, 1.0 + most), (-most, most), (turn, 1.0 + most)];
         let is_off = |at: usize| {
             let ((low, high), margin) = (ranges[at], N_SIGMAS * sigmas[at]);
             estimate[at] < low - margin || estimate[at] > high + margin

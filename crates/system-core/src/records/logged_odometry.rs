@@ -6,6 +6,9 @@ use wayfix_slam_ekf::MotionStatistics;
 
 use super::{EventCounts, HeldVelocity, IncrementPlausibilityCheck, check_velocity};
 
+/// Larger differences of the scale of odometry from 1 are no matter of calibration: an uncalibrated wheeled robot errs by a few percent. [Borenstein & Feng 1996]
+pub const ODOMETRY_SCALE_TOLERANCE: f64 = 0.2;
+
 /// The kind of odometry that moves a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OdometryRecordKind {

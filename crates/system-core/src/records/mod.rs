@@ -17,7 +17,7 @@ pub(crate) use cut_odometry::CutOdometry;
 pub use events::{EventCounts, RefusedRecord};
 pub use heading_sign::HeadingSignTest;
 pub use held_velocity::{HeldVelocity, HeldVelocityMotion, MAX_SPEED, VELOCITY_TIMEOUT, check_velocity};
-pub use logged_odometry::{LoggedMotion, LoggedOdometry, OdometryRecordKind};
+pub use logged_odometry::{LoggedMotion, LoggedOdometry, ODOMETRY_SCALE_TOLERANCE, OdometryRecordKind};
 pub use motion_between::motion_between;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::TurnHistory;

@@ -99,6 +99,9 @@ pub fn run_streamed<R: Borrow<Record>>(
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
     warn_of_no_odometry(system.events(), &plan.records, "the robot is taken to stand");
+    if let Some(scale) = &plan.turn_scale {
+        scale.warn(system.events());
+    }
     let mut truth = ReferencePath::from_records(&plan.records).restarted();
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
