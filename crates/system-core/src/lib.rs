@@ -34,10 +34,11 @@ pub use known_start::TrueStartPose;
 pub use laser::max_echo_range;
 pub use measurement::map_measurement;
 pub use records::{
-    EventCounts, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IncrementPlausibilityCheck, LogOverview,
-    LoggedMotion, LoggedOdometry, MAX_SPEED, NamedRecordKind, ODOMETRY, ODOMETRY_SCALE_TOLERANCE,
-    OVERVIEW_HEAD, OdometryRecordKind, RefusedRecord, RepeatedImageCheck, TurnHistory, VELOCITY_TIMEOUT,
-    check_overlap, check_velocity, motion_between, warn_of_no_odometry, without_odometry_delay,
+    DETECTIONS, EventCounts, HeadingSignTest, HeldVelocity, HeldVelocityMotion, IMAGES,
+    IncrementPlausibilityCheck, LogOverview, LoggedMotion, LoggedOdometry, MAX_SPEED, NamedRecordKind,
+    ODOMETRY, ODOMETRY_SCALE_TOLERANCE, OVERVIEW_HEAD, OdometryRecordKind, RefusedRecord, RepeatedImageCheck,
+    SCANS, TurnHistory, VELOCITY_TIMEOUT, check_overlap, check_velocity, motion_between,
+    warn_of_ended_odometry, warn_of_no_odometry, without_odometry_delay,
 };
 pub use robot_drawing::{PathSegmentWriter, ellipse_drawing, write_pose, write_robot};
 pub use system::{MOST_ESTIMATES, System};

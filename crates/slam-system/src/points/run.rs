@@ -10,8 +10,8 @@ use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferencePath, TruePosit
 use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{LandmarkEstimate, LandmarkId};
 use wayfix_system_core::{
-    EventCounts, ODOMETRY, OVERVIEW_HEAD, OdometryRecordKind, RunStep, System, TrueStartPose, check_overlap,
-    warn_of_start,
+    DETECTIONS, EventCounts, ODOMETRY, OVERVIEW_HEAD, OdometryRecordKind, RunStep, System, TrueStartPose,
+    check_overlap, warn_of_ended_odometry, warn_of_start,
 };
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
@@ -53,7 +53,7 @@ pub fn run_streamed<R: Borrow<Record>>(
         );
     };
     let association = association(overview, params.association)?;
-    check_overlap(overview, ODOMETRY, ("detections", |data| matches!(data, RecordData::Detections(_))))?;
+    check_overlap(overview, ODOMETRY, DETECTIONS)?;
     let truth = ReferencePath::from_records(overview);
     let true_positions = TruePositions::from_records(overview);
     let from =
@@ -115,6 +115,7 @@ fn drive_through<R: Borrow<Record>>(
     let mut run = SlamRun::new(system, &truth, true_landmarks(overview)).through(records, observe);
     let gate_probability = run.system.filter().params().gate_probability;
     warn_of_gross_errors(run.events(), gate_probability);
+    warn_of_ended_odometry(run.events(), overview, DETECTIONS);
     let last_truth = run.truth.last_stamp().or(run.true_positions.last_stamp());
     run.evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;

@@ -6,8 +6,8 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 use wayfix_system_core::{
-    EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_reference, warn_of_start,
-    without_odometry_delay,
+    EventCounts, ODOMETRY, RunStep, SCANS, System, TrueStartPose, check_overlap, warn_of_ended_odometry,
+    warn_of_reference, warn_of_start, without_odometry_delay,
 };
 
 use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
@@ -54,7 +54,7 @@ pub fn run_streamed<R: Borrow<Record>>(
             "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
-    check_overlap(overview, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
+    check_overlap(overview, ODOMETRY, SCANS)?;
     let track = ReferencePath::from_records_or_estimates(overview);
     let known = TrueStartPose::at(scan.stamp, &track, overview).filter(|_| params.start_pose.is_none());
     let start = start_pose(params.start_pose, known);
@@ -65,6 +65,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &track);
     }
+    warn_of_ended_odometry(system.events(), overview, SCANS);
     let true_walls = truth::true_walls(overview);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
@@ -92,7 +93,8 @@ pub fn run_on<R: Borrow<Record>>(
     association: Option<AssociationRule>,
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
-    let system = WallSystem::resume(params.clone(), saved, association)?;
+    let mut system = WallSystem::resume(params.clone(), saved, association)?;
+    warn_of_ended_odometry(system.events(), overview, SCANS);
     let track = ReferencePath::from_records_or_estimates(overview);
     drive_through(system, track, truth::true_walls(overview), records, observe)
 }

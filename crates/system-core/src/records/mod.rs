@@ -21,7 +21,10 @@ pub use logged_odometry::{LoggedMotion, LoggedOdometry, ODOMETRY_SCALE_TOLERANCE
 pub use motion_between::motion_between;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::TurnHistory;
-pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap, warn_of_no_odometry};
+pub use overlap::{
+    DETECTIONS, IMAGES, NamedRecordKind, ODOMETRY, SCANS, check_overlap, warn_of_ended_odometry,
+    warn_of_no_odometry,
+};
 pub use overview::{LogOverview, OVERVIEW_HEAD};
 pub use plausible_increment::IncrementPlausibilityCheck;
 pub use repeated_image::RepeatedImageCheck;

@@ -11,12 +11,41 @@ pub const ODOMETRY: NamedRecordKind<'static> = ("odometry", |data| {
     matches!(data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_) | RecordData::Ackermann(_))
 });
 
+/// Camera images.
+pub const IMAGES: NamedRecordKind<'static> = ("images", |data| matches!(data, RecordData::Image(_)));
+/// Laser scans.
+pub const SCANS: NamedRecordKind<'static> = ("laser scans", |data| matches!(data, RecordData::Scan(_)));
+/// Detections of landmarks.
+pub const DETECTIONS: NamedRecordKind<'static> =
+    ("detections", |data| matches!(data, RecordData::Detections(_)));
+
 /// Warns if a log has no increments and no velocities; `then` says what the system assumes.
 pub fn warn_of_no_odometry(events: &mut EventCounts, records: &[Record], then: &str) {
     let moves =
         |record: &Record| matches!(record.data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_));
     if !records.iter().any(moves) {
         events.warn("no_odometry", format!("the log has neither odometry increments nor velocities: {then}"));
+    }
+}
+
+/// Warns if the increments of a log end before the last record of what moves with them, by more than the time-out and two of their periods. Velocities that end are said
+/// where they expire.
+pub fn warn_of_ended_odometry(events: &mut EventCounts, records: &[Record], moved: NamedRecordKind<'_>) {
+    let (_, moves) = ODOMETRY;
+    let odometry: Vec<&Record> = records.iter().filter(|record| moves(&record.data)).collect();
+    let Some(Record { data: RecordData::OdometryIncrement(_), .. }) = odometry.first() else { return };
+    let Some(((_, end), (_, last))) = span(records, moves).zip(span(records, moved.1)) else { return };
+    let mut periods: Vec<f64> =
+        odometry.windows(2).map(|pair| pair[1].stamp.seconds_since(pair[0].stamp)).collect();
+    periods.sort_by(f64::total_cmp);
+    let period = periods.get(periods.len() / 2).copied().unwrap_or_default();
+    let missing = last.seconds_since(end);
+    if missing > VELOCITY_TIMEOUT.max(2.0 * period) {
+        let text = format!(
+            "odometry ends {missing:.1} s before the last of the {}: no motion is measured in that time",
+            moved.0
+        );
+        events.warn("odometry_ends_early", text);
     }
 }
 
@@ -85,5 +114,26 @@ mod tests {
     fn overlapping_and_missing_kinds_are_accepted() {
         assert!(check_overlap(&records(3, 7), ODOMETRY, TRUTH).is_ok());
         assert!(check_overlap(&records(3, 7)[..2], ODOMETRY, TRUTH).is_ok());
+    }
+
+    #[test]
+    fn increments_that_end_early_are_said() {
+        let increment = RecordData::OdometryIncrement(Pose2::new(0.1, 0.0, 0.0));
+        let velocity = RecordData::Velocity(Velocity { linear: 0.1, angular: 0.0 });
+        let truth = RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0));
+        let is_said = |odometry: &RecordData, period: u64| {
+            let at = |second: u64, data: &RecordData| Record {
+                stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
+                data: data.clone(),
+            };
+            let moved = (0..5).map(|step| at(period * step, odometry));
+            let records: Vec<_> = moved.chain([at(4 * period + 6, &truth)]).collect();
+            let mut events = EventCounts::default();
+            warn_of_ended_odometry(&mut events, &records, TRUTH);
+            events.get("odometry_ends_early") == 1
+        };
+        assert!(is_said(&increment, 1));
+        assert!(!is_said(&increment, 5)); // slower odometry
+        assert!(!is_said(&velocity, 1)); // said where it expires
     }
 }

@@ -10,8 +10,8 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData};
 use wayfix_system_core::{
-    ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, warn_of_large_errors,
-    warn_of_no_odometry, without_odometry_delay,
+    IMAGES, ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, warn_of_ended_odometry,
+    warn_of_large_errors, warn_of_no_odometry, without_odometry_delay,
 };
 
 use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
@@ -93,12 +93,13 @@ pub fn run_streamed<R: Borrow<Record>>(
     if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
-    check_overlap(&plan.records, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
+    check_overlap(&plan.records, ODOMETRY, IMAGES)?;
     for (image, pose) in &plan.training_views {
         system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
     warn_of_no_odometry(system.events(), &plan.records, "the robot is taken to stand");
+    warn_of_ended_odometry(system.events(), &plan.records, IMAGES);
     if let Some(scale) = &plan.turn_scale {
         scale.warn(system.events());
     }

@@ -11,8 +11,8 @@ use wayfix_evaluation::errors::{PoseWithTruth, ReferencePath};
 use wayfix_sensor_log::{Record, RecordData, Stamp};
 use wayfix_system_core::TrueStartPose;
 use wayfix_system_core::{
-    ODOMETRY, RunStep, System, check_overlap, drive, warn_of_large_errors, warn_of_no_odometry,
-    warn_of_no_overlap, warn_of_start, without_odometry_delay,
+    IMAGES, ODOMETRY, RunStep, System, check_overlap, drive, warn_of_ended_odometry, warn_of_large_errors,
+    warn_of_no_odometry, warn_of_no_overlap, warn_of_start, without_odometry_delay,
 };
 
 use super::{
@@ -84,7 +84,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     let Some(first_image) = overview.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
-    check_overlap(overview, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
+    check_overlap(overview, ODOMETRY, IMAGES)?;
     let truth = ReferencePath::from_records(overview);
     let known = TrueStartPose::at(first_image.stamp, &truth, overview).filter(|_| start.is_none());
     let start = start.unwrap_or_else(|| match known {
@@ -101,6 +101,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     let assumed =
         "between two images the robot may move at walking speed (`[localizer.odometry]`, …_without_odometry)";
     warn_of_no_odometry(system.events(), overview, assumed);
+    warn_of_ended_odometry(system.events(), overview, IMAGES);
     let (mut truth, mut totals) = (truth.restarted(), ColorTotals::default());
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
