@@ -16,9 +16,9 @@ pub enum LocalizerEvent {
     NewReference(ReferenceId),
     /// A reference was removed from the map.
     Forgotten(ReferenceId),
-    /// The belief is no longer unimodal.
+    /// No component has the minimum weight of a unimodal belief any more.
     Lost,
-    /// The belief is unimodal again.
+    /// One component has it again.
     Found,
     /// The most probable pose contradicts odometry: the robot was kidnapped, or the estimate was wrong before.
     Relocated,

@@ -32,7 +32,7 @@ impl Default for MixtureReductionParams {
 }
 
 /// Bhattacharyya distance below which two components become one. The sum of two Gaussians with the same covariance has a single mode up to a
-/// distance of 2σ, which is $`4 σ^2 / 8 σ^2`$. A narrow component within a wide one is far from it: it is a place that the robot may have recognized.
+/// distance of 2σ, which is $`4 σ^2 / 8 σ^2`$. A component within one that is 2.4 times as wide in all axes stays apart: it is a place that the robot may have recognized.
 const MERGE_DISTANCE: f64 = 0.5;
 
 impl MixtureReductionParams {
@@ -141,18 +141,18 @@ mod tests {
     }
 
     #[test]
-    fn two_equals_merge_up_to_two_sigma() {
+    fn equal_components_merge_up_to_two_sigma() {
         for (distance, n_components) in [(1.9, 1), (2.1, 2)] {
-            let of = simplified(&[at(0.0, 1.0, 1.0), at(distance, 1.0, 1.0)]);
-            assert_eq!(of.len(), n_components, "{distance}");
+            let simplified = simplified(&[at(0.0, 1.0, 1.0), at(distance, 1.0, 1.0)]);
+            assert_eq!(simplified.len(), n_components, "{distance}");
         }
     }
 
     #[test]
     fn narrow_component_within_a_wide_one_is_kept() {
-        let of = simplified(&[at(0.0, 3.0, 1.0), at(0.5, 0.3, 0.01)]);
-        assert_eq!(of.len(), 2);
-        assert_abs_diff_eq!(of[1].gaussian.mean().x(), 0.5);
-        assert_abs_diff_eq!(of[0].gaussian.sigmas().x, 3.0);
+        let simplified = simplified(&[at(0.0, 3.0, 1.0), at(0.5, 0.3, 0.01)]);
+        assert_eq!(simplified.len(), 2);
+        assert_abs_diff_eq!(simplified[1].gaussian.mean().x(), 0.5);
+        assert_abs_diff_eq!(simplified[0].gaussian.sigmas().x, 3.0);
     }
 }

@@ -115,7 +115,7 @@ fn drive_through<R: Borrow<Record>>(
     let mut run = SlamRun::new(system, &truth, true_landmarks(overview)).through(records, observe);
     let gate_probability = run.system.filter().params().gate_probability;
     warn_of_gross_errors(run.events(), gate_probability);
-    warn_of_ended_odometry(run.events(), overview, DETECTIONS);
+    warn_of_ended_odometry(run.events(), overview, DETECTIONS, "the robot is taken to stand");
     let last_truth = run.truth.last_stamp().or(run.true_positions.last_stamp());
     run.evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     let is_smoothed = run.system.front_end.params.smoothing == Smoothing::FixedLag;

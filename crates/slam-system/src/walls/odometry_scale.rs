@@ -91,8 +91,8 @@ impl OdometryScale {
     pub(super) fn warn(&self, events: &mut EventCounts) {
         let Some((estimate, sigmas)) = self.estimate() else { return };
         let [translation, turn] = self.least_scales();
-        let most = ODOMETRY_SCALE_TOLERANCE;
-        let ranges = [(translation, 1.0 + most), (-most, most), (turn, 1.0 + most)];
+        let tolerance = ODOMETRY_SCALE_TOLERANCE;
+        let ranges = [(translation, 1.0 + tolerance), (-tolerance, tolerance), (turn, 1.0 + tolerance)];
         let is_off = |at: usize| {
             let ((low, high), margin) = (ranges[at], N_SIGMAS * sigmas[at]);
             estimate[at] < low - margin || estimate[at] > high + margin

@@ -65,7 +65,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &track);
     }
-    warn_of_ended_odometry(system.events(), overview, SCANS);
+    warn_of_ended_odometry(system.events(), overview, SCANS, SCANS_ALONE);
     let true_walls = truth::true_walls(overview);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
@@ -94,10 +94,13 @@ pub fn run_on<R: Borrow<Record>>(
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let mut system = WallSystem::resume(params.clone(), saved, association)?;
-    warn_of_ended_odometry(system.events(), overview, SCANS);
+    warn_of_ended_odometry(system.events(), overview, SCANS, SCANS_ALONE);
     let track = ReferencePath::from_records_or_estimates(overview);
     drive_through(system, track, truth::true_walls(overview), records, observe)
 }
+
+/// What moves the robot without odometry.
+const SCANS_ALONE: &str = "the motion comes from scan matching alone";
 
 /// Says when no scan has an echo.
 fn warn_of_blind_laser(events: &mut EventCounts, n_scans: u64) {

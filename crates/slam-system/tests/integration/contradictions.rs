@@ -35,3 +35,20 @@ fn bearings_and_turns_of_the_wrong_sign_are_said() {
     }
     assert!(is_said(&bearings) && is_said(&turns));
 }
+
+#[test]
+fn odometry_that_ends_early_is_said() {
+    let records = log();
+    let middle = records[records.len() / 2].stamp;
+    let is_kept = |record: &&Record| {
+        record.stamp < middle
+            || !matches!(record.data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_))
+    };
+    let ended: Vec<Record> = records.iter().filter(is_kept).cloned().collect();
+    let params = PointSlamParams::of(RobotProfile::Generic);
+    let n_said = |records: &[Record]| {
+        let mut run = points::run(records, &params, |_| {}).expect("a usable log");
+        run.events().get("odometry_ends_early")
+    };
+    assert_eq!([n_said(&ended), n_said(&records)], [1, 0]);
+}

@@ -129,8 +129,14 @@ fn assert_right(increments: &[(usize, Pose2<f64>)]) -> WallRun {
 #[test]
 fn sound_odometry_says_nothing() {
     let mut run = assert_right(&every_step());
-    let said = ["record_refused", "odometry_lags", CONTRADICT];
-    assert_eq!(said.map(|name| run.events().get(name)), [0, 0, 0]);
+    let said = ["record_refused", "odometry_lags", "odometry_ends_early", CONTRADICT];
+    assert_eq!(said.map(|name| run.events().get(name)), [0; 4]);
+}
+
+#[test]
+fn odometry_that_ends_early_is_said() {
+    let mut run = run(&drive(&every_step()[..N_STEPS / 2], 0.0), &WallSlamParams::default());
+    assert_eq!(run.events().get("odometry_ends_early"), 1);
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod overlap;
 mod overview;
 mod plausible_increment;
 mod repeated_image;
+mod turn_scale;
 
 pub(crate) use cut_odometry::CutOdometry;
 pub use events::{EventCounts, RefusedRecord};

@@ -17,9 +17,9 @@ const MOST_TURNS: usize = 1 << 16;
 #[derive(Clone, Debug, Default)]
 pub struct TurnHistory {
     /// The dead-reckoned pose at each scan or image.
-    odometry: Vec<(Stamp, Pose2<f64>)>,
+    pub(super) odometry: Vec<(Stamp, Pose2<f64>)>,
     /// The turn since the previous one, rad.
-    seen: Vec<Option<f64>>,
+    pub(super) seen: Vec<Option<f64>>,
 }
 
 impl TurnHistory {

@@ -28,24 +28,36 @@ pub fn warn_of_no_odometry(events: &mut EventCounts, records: &[Record], then: &
     }
 }
 
-/// Warns if the increments of a log end before the last record of what moves with them, by more than the time-out and two of their periods. Velocities that end are said
-/// where they expire.
-pub fn warn_of_ended_odometry(events: &mut EventCounts, records: &[Record], moved: NamedRecordKind<'_>) {
-    let (_, moves) = ODOMETRY;
-    let odometry: Vec<&Record> = records.iter().filter(|record| moves(&record.data)).collect();
-    let Some(Record { data: RecordData::OdometryIncrement(_), .. }) = odometry.first() else { return };
-    let Some(((_, end), (_, last))) = span(records, moves).zip(span(records, moved.1)) else { return };
+/// Warns if the increments that move a robot end before the last record of a sensor, by more than the time-out and twice their median period; `then` says what the system
+/// assumes. Velocities are said where they expire.
+pub fn warn_of_ended_odometry(
+    events: &mut EventCounts,
+    records: &[Record],
+    sensor: NamedRecordKind<'_>,
+    then: &str,
+) {
+    let moves =
+        |record: &&Record| matches!(record.data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_));
+    let first = records.iter().find(moves).map(|record| &record.data);
+    let is_increment = |data: &RecordData| matches!(data, RecordData::OdometryIncrement(_));
+    if !first.is_some_and(is_increment) {
+        return;
+    }
+    let Some(((_, end), (_, last))) = span(records, is_increment).zip(span(records, sensor.1)) else {
+        return;
+    };
+    let increments: Vec<&Record> = records.iter().filter(|record| is_increment(&record.data)).collect();
     let mut periods: Vec<f64> =
-        odometry.windows(2).map(|pair| pair[1].stamp.seconds_since(pair[0].stamp)).collect();
+        increments.windows(2).map(|pair| pair[1].stamp.seconds_since(pair[0].stamp)).collect();
     periods.sort_by(f64::total_cmp);
     let period = periods.get(periods.len() / 2).copied().unwrap_or_default();
     let missing = last.seconds_since(end);
     if missing > VELOCITY_TIMEOUT.max(2.0 * period) {
-        let text = format!(
-            "odometry ends {missing:.1} s before the last of the {}: no motion is measured in that time",
-            moved.0
+        let (name, _) = sensor;
+        events.warn(
+            "odometry_ends_early",
+            format!("odometry ends {missing:.1} s before the last of the {name}: {then} in that time"),
         );
-        events.warn("odometry_ends_early", text);
     }
 }
 
@@ -74,7 +86,7 @@ pub fn check_overlap(
     )
 }
 
-fn span(records: &[Record], is: fn(&RecordData) -> bool) -> Option<(Stamp, Stamp)> {
+fn span(records: &[Record], is: impl Fn(&RecordData) -> bool) -> Option<(Stamp, Stamp)> {
     let mut stamps = records.iter().filter(|record| is(&record.data)).map(|record| record.stamp);
     let first = stamps.next()?;
     Some(stamps.fold((first, first), |(low, high), stamp| (low.min(stamp), high.max(stamp))))
@@ -121,19 +133,25 @@ mod tests {
         let increment = RecordData::OdometryIncrement(Pose2::new(0.1, 0.0, 0.0));
         let velocity = RecordData::Velocity(Velocity { linear: 0.1, angular: 0.0 });
         let truth = RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0));
-        let is_said = |odometry: &RecordData, period: u64| {
-            let at = |second: u64, data: &RecordData| Record {
-                stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
-                data: data.clone(),
-            };
-            let moved = (0..5).map(|step| at(period * step, odometry));
-            let records: Vec<_> = moved.chain([at(4 * period + 6, &truth)]).collect();
+        let at = |second: u64, data: &RecordData| Record {
+            stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
+            data: data.clone(),
+        };
+        let is_said = |records: &[Record]| {
             let mut events = EventCounts::default();
-            warn_of_ended_odometry(&mut events, &records, TRUTH);
+            warn_of_ended_odometry(&mut events, records, TRUTH, "the robot is taken to stand");
             events.get("odometry_ends_early") == 1
         };
-        assert!(is_said(&increment, 1));
-        assert!(!is_said(&increment, 5)); // slower odometry
-        assert!(!is_said(&velocity, 1)); // said where it expires
+        let log = |odometry: &RecordData, period: u64| -> Vec<Record> {
+            let motions = (0..5).map(|step| at(period * step, odometry));
+            motions.chain([at(4 * period + 6, &truth)]).collect()
+        };
+        assert!(is_said(&log(&increment, 1)));
+        assert!(!is_said(&log(&increment, 5)), "slower odometry");
+        assert!(!is_said(&log(&velocity, 1)), "said where it expires");
+        let mut both = log(&increment, 1);
+        both.push(at(10, &velocity));
+        assert!(is_said(&both), "velocities that nobody follows");
+        assert!(!is_said(&[]));
     }
 }

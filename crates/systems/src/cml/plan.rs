@@ -8,7 +8,7 @@ use wayfix_table_log::{HeadingSource, PosedFrame, PosedFrameFolder, poses};
 
 use super::{
     CmlParams, ViewDescriptorReader, synthetic_odometry,
-    turn_evidence::{TurnEvidence, TurnScale, turn_evidence},
+    turn_evidence::{AzimuthDirectionEvidence, turn_evidence},
 };
 
 /// Contents of a run: the training views, and the records to process after training.
@@ -22,8 +22,6 @@ pub struct CmlRunPlan {
     pub notes: Vec<String>,
     /// Whether the true headings were measured rather than computed from the path.
     pub headings_are_measured: bool,
-    /// How far the first views turn; `None` if the camera or the path does not turn.
-    pub(super) turn_scale: Option<TurnScale>,
 }
 
 /// How to read the camera.
@@ -68,7 +66,7 @@ impl CmlRunPlan {
         let (_, along) = poses(&taught.frames, heading, smoothing);
         let images = taught.frames.iter().map(|frame| &frame.image);
         let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
-        if let (HeadingSource::AlongPath, Some(evidence)) = (heading, &evidence) {
+        if let (HeadingSource::AlongPath, Some(evidence)) = (heading, evidence) {
             heading = match evidence {
                 _ if evidence.is_fixed() => HeadingSource::Fixed,
                 _ if evidence.is_unrelated() => HeadingSource::Unknown,
@@ -83,11 +81,7 @@ impl CmlRunPlan {
             }
         }
         notes.push(describe_heading(heading).to_owned());
-        notes.push(choose_sense(evidence.as_ref(), heading, params, camera));
-        let turns = !matches!(heading, HeadingSource::Fixed | HeadingSource::Unknown);
-        let turn_scale = evidence
-            .filter(|_| turns)
-            .and_then(|evidence| evidence.scale(params.panorama_descriptor.azimuth_direction));
+        notes.push(choose_sense(evidence, heading, params, camera));
 
         let (measured, smooth) = poses(&recording.frames, heading, smoothing);
         let increments = synthetic_odometry(&smooth, &params.synthetic_odometry.noise, seed);
@@ -104,8 +98,7 @@ impl CmlRunPlan {
             }
         };
         let records = records(&recording.frames, &measured, &increments, |index| !is_taught(index));
-        let headings_are_measured = heading == HeadingSource::Given;
-        Ok(Self { training_views, records, notes, headings_are_measured, turn_scale })
+        Ok(Self { training_views, records, notes, headings_are_measured: heading == HeadingSource::Given })
     }
 
     /// Columns and rows of the panorama of the first usable view.
@@ -132,9 +125,7 @@ impl CmlRunPlan {
         let turns = image_headings(&records, params.velocity_timeout);
         let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
         let mut plan = Self { headings_are_measured: true, ..Self::default() };
-        plan.notes.push(choose_sense(evidence.as_ref(), HeadingSource::Given, params, camera));
-        let direction = params.panorama_descriptor.azimuth_direction;
-        plan.turn_scale = evidence.and_then(|evidence| evidence.scale(direction));
+        plan.notes.push(choose_sense(evidence, HeadingSource::Given, params, camera));
         if withhold == 0 {
             plan.records = records;
             return Ok(plan);
@@ -206,7 +197,7 @@ fn evidence<'a>(
     images: impl Iterator<Item = (&'a EncodedImage, f64)>,
     params: &CmlParams,
     camera: &CameraViewGeometry,
-) -> Option<TurnEvidence> {
+) -> Option<AzimuthDirectionEvidence> {
     let views = PanoramaDescriptorParams {
         azimuth_direction: AzimuthDirection::Clockwise,
         ..params.panorama_descriptor
@@ -220,7 +211,7 @@ fn evidence<'a>(
 }
 
 fn choose_sense(
-    evidence: Option<&TurnEvidence>,
+    evidence: Option<AzimuthDirectionEvidence>,
     heading: HeadingSource,
     params: &mut CmlParams,
     camera: &CameraViewGeometry,

@@ -90,7 +90,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     mut observe: impl FnMut(RunStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
     let CmlRunSetup { mut system, plan, task, start, params, seed } = setup;
-    if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
+    if !plan.records.iter().any(|record| IMAGES.1(&record.data)) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
     check_overlap(&plan.records, ODOMETRY, IMAGES)?;
@@ -98,11 +98,9 @@ pub fn run_streamed<R: Borrow<Record>>(
         system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
     system.start(begin(start, &params.start_uncertainty, seed)?)?;
-    warn_of_no_odometry(system.events(), &plan.records, "the robot is taken to stand");
-    warn_of_ended_odometry(system.events(), &plan.records, IMAGES);
-    if let Some(scale) = &plan.turn_scale {
-        scale.warn(system.events());
-    }
+    let assumed = "the robot is taken to stand";
+    warn_of_no_odometry(system.events(), &plan.records, assumed);
+    warn_of_ended_odometry(system.events(), &plan.records, IMAGES, assumed);
     let mut truth = ReferencePath::from_records(&plan.records).restarted();
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));
@@ -113,6 +111,7 @@ pub fn run_streamed<R: Borrow<Record>>(
         bail!("no image could be used{why}");
     }
     system.warn_of_lag(params.odometry_delay);
+    system.warn_of_turn_scale();
     if system.localizer().map().is_empty() {
         let text =
             "no view was learned: by odometry the robot has never moved far enough from where it started";

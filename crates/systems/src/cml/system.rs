@@ -10,8 +10,8 @@ use wayfix_evaluation::plot::Decimated;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{EncodedImage, MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, topics};
 use wayfix_system_core::{
-    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, RepeatedImageCheck, Stopwatch, System,
-    TurnHistory,
+    EventCounts, LoggedMotion, LoggedOdometry, MOST_ESTIMATES, ODOMETRY_SCALE_TOLERANCE, RepeatedImageCheck,
+    Stopwatch, System, TurnHistory,
 };
 
 use super::{CmlParams, PoseSigmas, ViewDescriptorReader, external::ExternalSensors};
@@ -134,6 +134,19 @@ impl CmlSystem {
     /// Warns if the turns of the views show that odometry lags; `delay` is the delay already corrected, s.
     pub(super) fn warn_of_lag(&mut self, delay: f64) {
         self.turns.warn_of_lag(&mut self.events, delay);
+    }
+
+    /// Warns if the turns of the views contradict those of odometry, or of the table of poses, beyond its calibration.
+    pub(super) fn warn_of_turn_scale(&mut self) {
+        let Some([low, high]) = self.turns.turn_scale() else { return };
+        let text = match (1.0 - ODOMETRY_SCALE_TOLERANCE, 1.0 + ODOMETRY_SCALE_TOLERANCE) {
+            _ if high < 0.0 => "views turn the other way than odometry: check the sign of its turns and the order of columns (`--column-order`)".to_owned(),
+            (least, most) if high < least || low > most => format!(
+                "views turn {low:.2} to {high:.2} times as far as odometry says: check the unit and the scale of its turns, and whether a panorama spans 360°"
+            ),
+            _ => return,
+        };
+        self.events.warn("views_contradict_odometry", text);
     }
 
     /// Adds a reference view with a known pose; counts and skips an unusable view.

@@ -101,7 +101,7 @@ pub fn run_streamed<R: Borrow<Record>>(
     let assumed =
         "between two images the robot may move at walking speed (`[localizer.odometry]`, …_without_odometry)";
     warn_of_no_odometry(system.events(), overview, assumed);
-    warn_of_ended_odometry(system.events(), overview, IMAGES);
+    warn_of_ended_odometry(system.events(), overview, IMAGES, "the robot is taken to stand");
     let (mut truth, mut totals) = (truth.restarted(), ColorTotals::default());
     drive(&mut system, records, |step| {
         truth.take(step.record, step.system.frames().iter().map(|frame| frame.stamp));

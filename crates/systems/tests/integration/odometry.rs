@@ -193,6 +193,40 @@ fn log_without_odometry_says_so() {
     assert_eq!((color(&field).event)("no_odometry"), 0);
 }
 
+/// Without the increments after the first `seconds`.
+fn ended(records: &[Record], seconds: f64) -> Vec<Record> {
+    let begin = records.first().expect("records").stamp.seconds();
+    let is_kept = |record: &&Record| !is_increment(record) || record.stamp.seconds() < begin + seconds;
+    records.iter().filter(is_kept).cloned().collect()
+}
+
+#[test]
+fn odometry_that_ends_early_is_said() {
+    let (store, field) = (log("store_area.mcap", 10.0), log("color_bright.mcap", 3.0));
+    let said = |run: Outcome| (run.event)("odometry_ends_early");
+    assert_eq!([said(cml(ended(&store, 5.0))), said(cml(store))], [1, 0]);
+    assert_eq!([said(color(&ended(&field, 1.0))), said(color(&field))], [1, 0]);
+}
+
+/// The drive of [`log`] with the turns of odometry multiplied.
+fn with_turns(mut records: Vec<Record>, factor: f64) -> Vec<Record> {
+    for record in &mut records {
+        if let RecordData::OdometryIncrement(increment) = &mut record.data {
+            *increment = Pose2::new(increment.x(), increment.y(), factor * increment.heading());
+        }
+    }
+    records
+}
+
+#[test]
+fn turns_of_odometry_that_views_contradict_are_said() {
+    let store = log("store_area.mcap", 230.0);
+    for (factor, n_said) in [(1.0, 0), (0.7, 1), (2.5, 1), (-1.0, 1)] {
+        let run = cml(with_turns(store.clone(), factor));
+        assert_eq!((run.event)("views_contradict_odometry"), n_said, "{factor}");
+    }
+}
+
 /// A log in which the camera repeats an image twenty times.
 fn hanging(mut records: Vec<Record>, first: usize) -> Vec<Record> {
     let images = records.iter_mut().filter_map(|record| match &mut record.data {
