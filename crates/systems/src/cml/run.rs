@@ -110,8 +110,11 @@ pub fn run_streamed<R: Borrow<Record>>(
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");
     }
-    system.warn_of_lag(params.odometry_delay);
-    system.warn_of_turn_scale();
+    // Headings along a smoothed path turn at other times than the robot.
+    if plan.headings_are_measured {
+        system.warn_of_lag(params.odometry_delay);
+        system.warn_of_turn_scale();
+    }
     if system.localizer().map().is_empty() {
         let text =
             "no view was learned: by odometry the robot has never moved far enough from where it started";

@@ -242,6 +242,8 @@ fn a_real_route_is_within_what_was_asked_for() {
         assert!(outcome.metric("nearest_reference_error_mean_m") <= 0.034, "{}", outcome.stdout);
         let (mean, most) = (outcome.metric("error_mean_m"), outcome.metric("error_max_m"));
         assert!(mean <= 0.025 && most <= 0.15, "seed {seed}: {mean} {most}");
+        // The table has no headings: those along the path tell no delay.
+        assert_eq!([outcome.event("odometry_lags"), outcome.event("views_contradict_odometry")], [0, 0]);
     }
 }
 
