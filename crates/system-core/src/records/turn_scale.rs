@@ -14,10 +14,10 @@ const ENOUGH: usize = 30;
 const N_SIGMAS: f64 = 3.0;
 
 impl TurnHistory {
-    /// Bounds of the factor by which the sensor turns as far as odometry says; `None` if the turns do not tell.
+    /// Bounds of the ratio of the sensor's turns to those of odometry; `None` if the turns do not tell.
     ///
-    /// Both turns err, by how much is unknown. Whatever the errors are, the factor lies between the regressions of the one on the other [Frisch 1934], here with
-    /// three standard errors each. A negative factor has the sign of one of them wrong.
+    /// Both have errors of unknown size. If these are independent of each other, the ratio lies between the two regressions of the one on the other [Frisch 1934],
+    /// here with three standard errors each. It is negative if one of the signs is wrong.
     pub fn turn_scale(&self) -> Option<[f64; 2]> {
         let odometry = self.odometry.windows(2).map(|pair| pair[0].1.inverse().compose(&pair[1].1).heading());
         let turns = odometry.zip(self.seen.iter().skip(1)).filter_map(|(turn, seen)| Some((turn, (*seen)?)));
