@@ -88,8 +88,8 @@ impl Default for LocalizerParams {
 }
 
 impl LocalizerParams {
-    /// The method as published, without any addition: superposition, covariance intersection by Eqs. 3-8, no test for a kidnapping, every view
-    /// learned.
+    /// The method as published: superposition, covariance intersection by Eqs. 3-8, no test for a kidnapping, every view learned. Mixtures are simplified as by
+    /// default; the paper merges components "similar" to Eq. 12.
     pub fn as_published() -> Self {
         Self {
             pose_hypothesis_rule: PoseHypothesisRule::Superposition,

@@ -47,6 +47,12 @@ fn taught(field: &Field, rng: &mut ChaCha8Rng) -> AppearanceMap<FieldView> {
     localizer.into_map()
 }
 
+/// Localizes in a map that stays as it is.
+fn not_learning(map: AppearanceMap<FieldView>, start: StartPosePrior) -> Localizer {
+    let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
+    Localizer::with_map(params, map, start).expect("valid defaults")
+}
+
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -98,11 +104,9 @@ fn uncertain_robot_is_located_by_successive_views() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let field = Field::new(&mut rng);
         let map = taught(&field, &mut rng);
-        let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
         let off = way()[0].compose(&Pose2::new(2.0, 2.0, 0.0));
         let start = Gaussian::from_sigmas(off, &Vector3::new(4.0, 4.0, 0.2)).expect("positive sigmas");
-        let mut localizer =
-            Localizer::with_map(params, map, StartPosePrior::Known(start)).expect("valid defaults");
+        let mut localizer = not_learning(map, StartPosePrior::Known(start));
         let errors = drive(&mut localizer, &field, (0, 20), &mut rng);
         // As from a known start, within a step of 0.26 m.
         assert!(errors[19] < 0.26, "seed {seed}: {} m after 5 m", errors[19]);
@@ -117,9 +121,7 @@ fn robot_is_found_from_an_unknown_start_and_after_kidnapping() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let field = Field::new(&mut rng);
         let map = taught(&field, &mut rng);
-        let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
-        let mut localizer =
-            Localizer::with_map(params, map, StartPosePrior::Anywhere).expect("valid defaults");
+        let mut localizer = not_learning(map, StartPosePrior::Anywhere);
         let begin = 16 * seed as usize;
         // 20 m are 77 steps.
         found += u32::from(drive(&mut localizer, &field, (begin, 77), &mut rng)[76] < 1.0);
@@ -164,9 +166,7 @@ fn turning_on_the_spot_is_corrected_by_views() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let field = Field::new(&mut rng);
     let map = taught(&field, &mut rng);
-    let params = LocalizerParams { map_learning: STATIC, ..LocalizerParams::default() };
-    let mut localizer =
-        Localizer::with_map(params, map, StartPosePrior::Known(known(way()[0]))).expect("valid defaults");
+    let mut localizer = not_learning(map, StartPosePrior::Known(known(way()[0])));
     drive(&mut localizer, &field, (0, 20), &mut rng);
     let mut pose = way()[20];
     let mut largest: f64 = 0.0;

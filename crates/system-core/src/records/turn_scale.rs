@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn small_errors_give_narrow_bounds_and_large_ones_give_none() {
+    fn small_errors_give_narrow_bounds_and_large_ones_wide_ones() {
         let [low, high] = bounds(1.0, 0.3, [0.01, 0.01], 1).expect("turns that tell");
         assert!(0.98 < low && high < 1.02, "{low} to {high}");
         // Straight on: all turns are errors.

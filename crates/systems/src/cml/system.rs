@@ -140,9 +140,9 @@ impl CmlSystem {
     pub(super) fn warn_of_turn_scale(&mut self) {
         let Some([low, high]) = self.turns.turn_scale() else { return };
         let text = match (1.0 - ODOMETRY_SCALE_TOLERANCE, 1.0 + ODOMETRY_SCALE_TOLERANCE) {
-            _ if high < 0.0 => "views turn the other way than odometry: check the sign of its turns and the order of columns (`--column-order`)".to_owned(),
+            _ if high < 0.0 => "views turn the other way than odometry or the table of poses: check the sign of its turns and the order of columns (`--column-order`)".to_owned(),
             (least, most) if high < least || low > most => format!(
-                "views turn {low:.2} to {high:.2} times as far as odometry says: check the unit and the scale of its turns, and whether a panorama spans 360°"
+                "views turn {low:.2} to {high:.2} times as far as odometry or the table of poses says: check the unit and the scale of its turns, and whether a panorama spans 360°"
             ),
             _ => return,
         };
