@@ -16,6 +16,8 @@
 //! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`FoxgloveMessageWriter`]
 //! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
+//! The features `lz4` and `zstd` (on by default) read compressed chunks of MCAP by C libraries. Without them such a chunk counts as damaged, with the reason.
+//!
 //! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```
 //! use wayfix_sensor_log::{RecordData, LogOpenOptions, open};
