@@ -55,6 +55,17 @@ pub(crate) fn number(column: &str) -> Result<f64, RowError> {
     }
 }
 
+/// A positive number.
+pub(crate) fn standard_deviation(column: &str) -> Result<f64, RowError> {
+    let sigma = number(column)?;
+    if sigma > 0.0 {
+        Ok(sigma)
+    } else {
+        let reason = format!("the standard deviation {sigma} is not positive");
+        Err(RowError::new(RowProblemKind::Inconsistent, reason))
+    }
+}
+
 /// A range as printed: NaN and infinity mean no echo.
 pub(crate) fn range(column: &str) -> Result<f64, RowError> {
     parse(column, "a range")
@@ -92,6 +103,9 @@ mod tests {
         assert_eq!(number("-1.5e3").unwrap(), -1500.0);
         assert_eq!(kind(number("1,5")), RowProblemKind::NotANumber);
         assert_eq!(kind(number("nan")), RowProblemKind::NotFinite);
+        assert_eq!(standard_deviation("0.5").unwrap(), 0.5);
+        assert_eq!(kind(standard_deviation("-1")), RowProblemKind::Inconsistent);
+        assert_eq!(standard_deviation("0").unwrap_err().reason, "the standard deviation 0 is not positive");
         assert_eq!(kind(number("1e999")), RowProblemKind::NotFinite);
         assert_eq!(stamp("-1").unwrap_err().kind, RowProblemKind::BadStamp);
         assert_eq!(id("4294967296").unwrap_err().kind, RowProblemKind::NotANumber);

@@ -16,7 +16,7 @@ use wayfix_estimation_traits::wrap_angle;
 
 use super::Lines;
 use super::gps::drop_jumps;
-use super::row::{RowError, comma_columns, id, number, stamp};
+use super::row::{RowError, comma_columns, id, number, stamp, standard_deviation};
 use super::time_order::{Timed, rows_in_time_order};
 use crate::formats::format::shortened;
 use crate::topics::WORLD_FRAME;
@@ -106,7 +106,7 @@ fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     let read = match has_columns::<4>(path) {
         Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
         Ok(true) => read_rows(path, ["t_s", "x_m", "y_m", "sigma_m"], report, |[t, x, y, sigma]| {
-            let sigma = if sigma.is_empty() { None } else { Some(number(sigma)?) };
+            let sigma = if sigma.is_empty() { None } else { Some(standard_deviation(sigma)?) };
             take([t, x, y], sigma)
         }),
         _ => read_rows(path, ["t_s", "x_m", "y_m"], report, |row| take(row, None)),

@@ -74,7 +74,7 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
 fn a_fix_with_a_sigma_is_a_measurement_and_no_truth() {
     let folder = tempfile::tempdir().unwrap();
     set(folder.path());
-    let rows = "t_s,x_m,y_m,sigma_m\n1,-67.5,-41.75,\n2,-60,-40,5.3\n3,500,0,5.3\n4,-50,-40,\n5,0,0,far\n";
+    let rows = "t_s,x_m,y_m,sigma_m\n1,-67.5,-41.75,\n2,-60,-40,5.3\n3,500,0,5.3\n4,-50,-40,\n5,0,0,far\n6,0,0,-1\n7,0,0,0\n";
     write(folder.path(), "gps.csv", rows);
     let (records, report) = open(folder.path(), &LogOpenOptions::default()).unwrap().read_all();
     let measured = records.iter().filter_map(|record| match &record.data {
@@ -89,6 +89,7 @@ fn a_fix_with_a_sigma_is_a_measurement_and_no_truth() {
     let truths = records.iter().filter(|record| matches!(record.data, RecordData::TruePosition(_)));
     assert_eq!(truths.count(), 2);
     assert_eq!(report.problems.get(&RowProblemKind::NotANumber), Some(&1));
+    assert_eq!(report.problems.get(&RowProblemKind::Inconsistent), Some(&2), "sigmas that are not positive");
 }
 
 #[test]

@@ -3,8 +3,9 @@ use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
 use super::{
     EkfSlam,
-    predict::{LARGEST_VARIANCE, check_covariance},
+    predict::{LARGEST_VARIANCE, check_covariance, not_positive_definite},
     state::{Slot, is_finite},
+    update_robot::dynamic,
 };
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc, SlamError,
@@ -91,8 +92,7 @@ where
         let what = "landmark covariance";
         check_covariance(what, covariance)?;
         if Cholesky::new(covariance.clone()).is_none() {
-            let value = covariance.diagonal().min();
-            return Err(SlamError::NotACovariance { what, value, asymmetry: 0.0 });
+            return Err(not_positive_definite(what, &dynamic(covariance)));
         }
         let joint = robot_jacobian * self.robot_covariance() * robot_jacobian.transpose() + covariance;
         if !joint.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {

@@ -94,3 +94,11 @@ where
     }
     DMatrix::from_fn(D::DIM, D::DIM, |row, column| matrix[(row, column)]).symmetric_eigenvalues().min()
 }
+
+/// The error of a symmetric matrix that has no Cholesky factor.
+pub(super) fn not_positive_definite(what: &'static str, matrix: &DMatrix<f64>) -> SlamError {
+    if !matrix.iter().all(|entry| entry.is_finite()) {
+        return SlamError::NotFinite { what };
+    }
+    SlamError::NotACovariance { what, value: matrix.symmetric_eigenvalues().min(), asymmetry: 0.0 }
+}

@@ -5,7 +5,7 @@ use super::{
     EkfSlam, SlamParams,
     map::check_finite,
     map_management::retire::Retired,
-    predict::{LARGEST_VARIANCE, check_covariance},
+    predict::{LARGEST_VARIANCE, check_covariance, not_positive_definite},
     state::Slot,
 };
 use crate::{
@@ -159,9 +159,8 @@ fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<DMatrix<f64>, Sla
         return Err(SlamError::NotFinite { what });
     }
     let joint = from_lower(dimension, lower);
-    let smallest_variance = joint.diagonal().min();
-    if smallest_variance < 0.0 || !is_semidefinite(&joint) {
-        return Err(SlamError::NotACovariance { what, value: smallest_variance, asymmetry: 0.0 });
+    if joint.diagonal().min() < 0.0 || !is_semidefinite(&joint) {
+        return Err(not_positive_definite(what, &joint));
     }
     Ok(joint)
 }

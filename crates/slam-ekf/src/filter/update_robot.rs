@@ -6,7 +6,7 @@ use wayfix_gaussian_core::ChiSquaredGate;
 
 use super::{
     EkfSlam, OutlierRule,
-    predict::{LARGEST_VARIANCE, check_covariance},
+    predict::{LARGEST_VARIANCE, check_covariance, not_positive_definite},
 };
 use crate::{
     Innovation, LandmarkDim, LandmarkModel, MeasurementDim, PlanarRobot, RobotDim, RobotInnovation,
@@ -106,9 +106,9 @@ where
             return Err(SlamError::NotFinite { what });
         }
         let covariance = &jacobian * dynamic(&self.robot_covariance()) * jacobian.transpose() + &noise;
-        let indefinite =
-            SlamError::NotACovariance { what, value: covariance.diagonal().min(), asymmetry: 0.0 };
-        let Some(factor) = Cholesky::new(covariance.clone()) else { return Err(indefinite) };
+        let Some(factor) = Cholesky::new(covariance.clone()) else {
+            return Err(not_positive_definite(what, &covariance));
+        };
         let nis = residual.dot(&factor.solve(&residual));
         let threshold = self.robot_gate(residual.len())?;
         if nis > threshold && outlier_rule == OutlierRule::Reject {
@@ -124,7 +124,10 @@ where
             rows.push_row(row.iter().copied(), 0, []);
         }
         let residual = residual.column(0).into_owned();
-        let step = self.covariance.correct(&rows, &noise, &residual).ok_or(indefinite)?;
+        let step = self
+            .covariance
+            .correct(&rows, &noise, &residual)
+            .ok_or_else(|| not_positive_definite(what, &covariance))?;
         self.step(&step);
         Ok(RobotInnovation { nis, jacobian, covariance })
     }
@@ -141,7 +144,7 @@ where
     }
 }
 
-fn dynamic<R: Dim, C: Dim>(matrix: &OMatrix<f64, R, C>) -> DMatrix<f64>
+pub(super) fn dynamic<R: Dim, C: Dim>(matrix: &OMatrix<f64, R, C>) -> DMatrix<f64>
 where
     DefaultAllocator: Allocator<R, C>,
 {

@@ -5,6 +5,7 @@ use crate::common;
 
 use std::collections::BTreeSet;
 
+use approx::assert_abs_diff_eq;
 use nalgebra::Vector2;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -61,12 +62,22 @@ fn unknown_ids_and_singular_covariances_are_typed_errors() {
         empty(SlamParams::default()).add_anchors(anchors, Some(&seen), Vector2::from).unwrap_err()
     };
     assert_eq!(refused(&[anchor(5, None)]), AnchorError::UnknownId { id: 5, n_seen: 1 });
-    for singular in [[[1.0, 1.0], [1.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]], [[1.0, 2.0], [2.0, 1.0]]] {
-        let error = refused(&[anchor(4, Some(singular))]);
-        let AnchorError::Landmark { id: 4, source: SlamError::NotACovariance { .. } } = error else {
+    let singular = [
+        ([[1.0, 1.0], [1.0, 1.0]], 0.0), // [[a, b], [b, a]] has the eigenvalues a + b and a − b
+        ([[1.0, 2.0], [2.0, 1.0]], -1.0),
+    ];
+    for (covariance, smallest) in singular {
+        let error = refused(&[anchor(4, Some(covariance))]);
+        let AnchorError::Landmark { id: 4, source: SlamError::NotACovariance { value, .. } } = error else {
             panic!("{error}")
         };
+        assert_abs_diff_eq!(value, smallest, epsilon = 1e-12);
     }
+    let without_variance = refused(&[anchor(4, Some([[0.0, 0.0], [0.0, 1.0]]))]);
+    assert!(matches!(
+        without_variance,
+        AnchorError::Landmark { source: SlamError::NotACovariance { .. }, .. }
+    ));
     let twice = refused(&[anchor(4, None), anchor(4, None)]);
     assert_eq!(twice, AnchorError::Landmark { id: 4, source: SlamError::LandmarkExists(LandmarkId(4)) });
     let nowhere = AnchorParams { at: [f64::NAN, 0.0], ..anchor(4, None) };

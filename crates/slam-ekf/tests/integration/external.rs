@@ -126,6 +126,21 @@ fn mirrored_compass_is_rejected_and_leaves_no_trace() {
 }
 
 #[test]
+fn a_stated_covariance_has_noise_in_what_is_measured() {
+    let params = ExternalParams::default();
+    let diagonal = |x, y, heading| Some(Matrix3::from_diagonal(&Vector3::new(x, y, heading)));
+    let is_refused = |stated, position, heading| {
+        matches!(params.covariance(stated, position, heading), Err(ExternalError::Covariance(_)))
+    };
+    assert!(is_refused(diagonal(0.0, 1.0, 1.0), true, false));
+    assert!(is_refused(diagonal(1.0, 1.0, 0.0), true, true));
+    assert!(is_refused(diagonal(1.0, 1.0, -1.0), false, true));
+    assert!(is_refused(Some(Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0)), true, false));
+    let position = diagonal(1.0, 1.0, 0.0); // of a position: it says nothing of the heading
+    assert_eq!(params.covariance(position, true, false).ok(), position);
+}
+
+#[test]
 fn bad_numbers_and_covariances_are_typed_errors() {
     let mut slam = mapped();
     let before = slam.snapshot();

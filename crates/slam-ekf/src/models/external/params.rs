@@ -1,4 +1,5 @@
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
+use wayfix_gaussian_core::{GaussianError, check_covariance};
 
 use super::LocalPlane;
 use crate::SlamError;
@@ -38,6 +39,9 @@ pub enum ExternalError {
     /// It has no covariance, and the parameters have none.
     #[error("it has no covariance (`external.position_sigma`, `external.heading_sigma`)")]
     NoCovariance,
+    /// What it states is no covariance: a measurement without noise is none.
+    #[error(transparent)]
+    Covariance(#[from] GaussianError),
     /// The filter refuses it.
     #[error(transparent)]
     Filter(#[from] SlamError),
@@ -70,7 +74,8 @@ impl ExternalParams {
     /// The covariance of `(x, y, θ)` that the sensor states, else that of the parameters.
     ///
     /// # Errors
-    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured.
+    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured, [`ExternalError::Covariance`] if the stated one is not
+    /// positive definite in what is measured.
     pub fn covariance(
         &self,
         stated: Option<Matrix3<f64>>,
@@ -82,6 +87,14 @@ impl ExternalParams {
         let assumed = sigmas.map(|(position, heading)| {
             Matrix3::from_diagonal(&Vector3::new(position, position, heading).map(|sigma| sigma * sigma))
         });
-        stated.or(assumed).ok_or(ExternalError::NoCovariance)
+        let covariance = stated.or(assumed).ok_or(ExternalError::NoCovariance)?;
+        let what = "covariance of a measured pose";
+        match (has_position, has_heading) {
+            (true, true) => check_covariance(what, &covariance)?,
+            (true, false) => check_covariance(what, &covariance.fixed_view::<2, 2>(0, 0).into_owned())?,
+            (false, true) => check_covariance(what, &Matrix1::new(covariance.m33))?,
+            (false, false) => {}
+        }
+        Ok(covariance)
     }
 }
