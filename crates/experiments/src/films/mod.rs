@@ -5,6 +5,7 @@ mod follow;
 mod learned;
 mod score;
 mod starts;
+mod stereo;
 mod table;
 
 pub(crate) use active::active;
@@ -12,4 +13,5 @@ pub(crate) use follow::follow;
 pub(crate) use learned::learned;
 pub use score::FilmTrackingScore;
 pub(crate) use starts::starts;
+pub(crate) use stereo::stereo;
 pub use table::table;

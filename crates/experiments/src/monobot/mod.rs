@@ -3,6 +3,7 @@
 mod drive;
 mod figures;
 mod fisher;
+mod likelihood;
 mod plots;
 mod reference;
 
@@ -10,5 +11,6 @@ pub(crate) use drive::{MonobotDrive, MonobotStep, drive, plain_filter};
 pub(crate) use figures::monte_carlo;
 pub use fisher::expected_rate;
 pub(crate) use fisher::first_entry;
+pub(crate) use likelihood::likelihood_metrics;
 pub(crate) use plots::{fisher_plot, plots};
 pub(crate) use reference::{FixedPositionSensor, WorldReference};

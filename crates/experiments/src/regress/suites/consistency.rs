@@ -16,6 +16,8 @@ use crate::{
 enum Settings {
     /// Information against the number of landmarks.
     Fisher { n_landmarks: Vec<u32>, n_steps: usize },
+    /// Likelihood of the measurements of many drives, and its gradient.
+    Likelihood { n_drives: u64, n_steps: usize },
     /// Many drives with one kind of reference.
     Monobot {
         reference: WorldReference,
@@ -48,6 +50,10 @@ struct Noise {
 pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     match job.planned.settings()? {
         Settings::Fisher { n_landmarks, n_steps } => fisher(&n_landmarks, n_steps),
+        Settings::Likelihood { n_drives, n_steps } => {
+            let metrics = monobot::likelihood_metrics(n_drives, n_steps, job.options.seed)?;
+            Ok(ReportRun { metrics, ..ReportRun::default() })
+        }
         Settings::Monobot { reference, n_runs, noise } => {
             let all = monobot::monte_carlo(&noise.params(1), reference, n_runs, job.options.seed)?;
             let figures = all.drives.first().map(monobot::plots).transpose()?.unwrap_or_default();

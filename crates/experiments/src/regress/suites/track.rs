@@ -39,6 +39,9 @@ struct Settings {
     /// Whether the contour tracker learns its colour dynamics from a training film.
     #[serde(default)]
     learns_dynamics: bool,
+    /// Whether a stereo camera measures the distance of the head.
+    #[serde(default)]
+    has_stereo: bool,
     /// Space of the contour tracker's colours, unless it is the default.
     color_space: Option<ColorSpace>,
     /// Largest rate, in degrees a second, of a pan/tilt head that turns a part of the film's view after the target.
@@ -91,6 +94,9 @@ fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportR
     let first = 1000 * job.options.seed;
     if let Some(rate) = settings.pan_tilt_rate_deg_s {
         return films::active(&film, first..first + n_seeds, rate.to_radians());
+    }
+    if settings.has_stereo {
+        return films::stereo(&film, first..first + n_seeds, &settings.params().head);
     }
     if settings.learns_dynamics {
         return films::learned(&film, first..first + n_seeds, &settings.params().contour);
