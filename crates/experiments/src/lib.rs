@@ -15,7 +15,7 @@ pub mod labelled;
 pub mod monobot;
 pub mod regress;
 mod simplification;
-mod thinned_positions;
+mod thinned_measurements;
 pub mod venues;
 mod views_paper;
 

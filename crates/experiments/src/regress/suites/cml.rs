@@ -14,7 +14,7 @@ use wayfix_table_log::{PoseTables, PosedFrameFolder};
 use super::super::PlannedJob;
 use crate::{
     cml::{self as experiments, CmlExperimentSetup},
-    thinned_positions::ThinnedPositions,
+    thinned_measurements::ThinnedMeasurements,
 };
 
 /// Settings of a run.
@@ -31,7 +31,7 @@ struct Settings {
     /// Names of its columns.
     columns: Option<String>,
     /// Positions of the log as measurements of an external sensor.
-    external: Option<ThinnedPositions>,
+    external: Option<ThinnedMeasurements>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

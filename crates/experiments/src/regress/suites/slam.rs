@@ -14,7 +14,7 @@ use wayfix_system_core::RunStep;
 use wayfix_table_log::RangeRecording;
 
 use super::{super::PlannedJob, pose_graph};
-use crate::thinned_positions::ThinnedPositions;
+use crate::thinned_measurements::ThinnedMeasurements;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -35,7 +35,7 @@ struct Settings {
     #[serde(default)]
     smoother: bool,
     /// Positions of the log as measurements of an external sensor.
-    external: Option<ThinnedPositions>,
+    external: Option<ThinnedMeasurements>,
     /// File of known relations between poses, relative to the folder of recordings.
     relations: Option<PathBuf>,
 }

@@ -3,31 +3,34 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Deserialize;
+use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{MeasuredQuantity, PoseMeasurement, Record, RecordData, Stamp, topics};
 use wayfix_slam_ekf::ExternalParams;
 
-/// Positions of a log as measurements of an external sensor. [Andrade-Cetto 2005, Eqs. 26–27]
+/// Poses of a log as measurements of an external sensor: positions, headings or, with both sigmas, poses. [Andrade-Cetto 2005, Eqs. 26–27]
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ThinnedPositions {
+pub(crate) struct ThinnedMeasurements {
     /// Standard deviation of a position along each axis, m.
-    pub(crate) sigma_m: f64,
+    pub(crate) sigma_m: Option<f64>,
+    /// Standard deviation of a heading, degrees. Fixes of a receiver have none.
+    pub(crate) heading_sigma_deg: Option<f64>,
     /// Seconds between two measurements; without it none is used, and the noise is only that of the truth.
     pub(crate) every_s: Option<f64>,
 }
 
-impl ThinnedPositions {
+impl ThinnedMeasurements {
     /// Parameters of a filter that takes the measurements.
     pub(crate) fn params(&self) -> ExternalParams {
         ExternalParams {
             frames: self.every_s.iter().map(|_| topics::WORLD_FRAME.to_owned()).collect(),
-            position_sigma: Some(self.sigma_m),
+            position_sigma: self.sigma_m,
+            heading_sigma: self.heading_sigma_deg.map(f64::to_radians),
             ..ExternalParams::default()
         }
     }
 
-    /// The records with measurements. A fix of a receiver becomes one and is no truth any more; a true pose stays, and the measurement of its position
-    /// gets an error.
+    /// The records with measurements. A fix of a receiver becomes one and is no truth any more; a true pose stays, and its measurement gets an error.
     pub(crate) fn in_log(&self, records: Vec<Record>, seed: u64) -> Vec<Record> {
         let Some(every) = self.every_s else { return records };
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -39,16 +42,14 @@ impl ThinnedPositions {
             match &record.data {
                 RecordData::TruePosition(fix) if is_due => {
                     last = stamp;
-                    with_measurements.push(self.measurement(stamp, Vector2::new(fix.x, fix.y)));
+                    let position = MeasuredQuantity::Position(Vector2::new(fix.x, fix.y));
+                    with_measurements.push(self.measurement(stamp, position));
                 }
                 RecordData::TruePose(pose) if is_due => {
                     last = stamp;
-                    let error = Vector2::from_fn(|_, _| {
-                        let unit: f64 = StandardNormal.sample(&mut rng);
-                        self.sigma_m * unit
-                    });
-                    let measured = self.measurement(stamp, pose.translation + error);
-                    with_measurements.extend([record, measured]);
+                    let measured = self.measured(pose, &mut rng);
+                    with_measurements.push(record);
+                    with_measurements.extend(measured.map(|quantity| self.measurement(stamp, quantity)));
                 }
                 _ => with_measurements.push(record),
             }
@@ -56,12 +57,30 @@ impl ThinnedPositions {
         with_measurements
     }
 
-    fn measurement(&self, stamp: Stamp, position: Vector2<f64>) -> Record {
-        let variance = self.sigma_m * self.sigma_m;
+    /// A true pose with an error in what has a sigma.
+    fn measured(&self, pose: &Pose2<f64>, rng: &mut ChaCha8Rng) -> Option<MeasuredQuantity> {
+        let mut error = |sigma: f64| {
+            let unit: f64 = StandardNormal.sample(rng);
+            sigma * unit
+        };
+        let position = self.sigma_m.map(|sigma| pose.translation + Vector2::from_fn(|_, _| error(sigma)));
+        let heading = self.heading_sigma_deg.map(|sigma| pose.heading() + error(sigma.to_radians()));
+        match (position, heading) {
+            (Some(at), Some(heading)) => Some(MeasuredQuantity::Pose(Pose2::new(at.x, at.y, heading))),
+            (Some(at), None) => Some(MeasuredQuantity::Position(at)),
+            (None, Some(heading)) => Some(MeasuredQuantity::Heading(heading)),
+            (None, None) => None,
+        }
+    }
+
+    fn measurement(&self, stamp: Stamp, quantity: MeasuredQuantity) -> Record {
+        let variance = |sigma: Option<f64>| sigma.map_or(0.0, |sigma| sigma * sigma);
+        let (position, heading) =
+            (variance(self.sigma_m), variance(self.heading_sigma_deg.map(f64::to_radians)));
         let data = RecordData::PoseMeasurement(PoseMeasurement {
             frame: topics::WORLD_FRAME.to_owned(),
-            quantity: MeasuredQuantity::Position(position),
-            covariance: Some(Matrix3::from_diagonal(&Vector3::new(variance, variance, 0.0))),
+            quantity,
+            covariance: Some(Matrix3::from_diagonal(&Vector3::new(position, position, heading))),
         });
         Record { stamp, data }
     }
@@ -70,7 +89,6 @@ impl ThinnedPositions {
 #[cfg(test)]
 mod tests {
     use approx::abs_diff_eq;
-    use wayfix_estimation_traits::Pose2;
     use wayfix_sensor_log::TruePosition;
 
     use super::*;
@@ -84,13 +102,14 @@ mod tests {
         let fixes: Vec<Record> = (0..=200)
             .map(|second| at(second, RecordData::TruePosition(TruePosition { x: second as f64, y: 0.0 })))
             .collect();
-        let positions = ThinnedPositions { sigma_m: 2.0, every_s: Some(60.0) };
+        let positions =
+            ThinnedMeasurements { sigma_m: Some(2.0), heading_sigma_deg: None, every_s: Some(60.0) };
         let records = positions.in_log(fixes.clone(), 1);
         let measured = |record: &&Record| matches!(record.data, RecordData::PoseMeasurement(_));
         let seconds: Vec<f64> =
             records.iter().filter(measured).map(|record| record.stamp.seconds().round()).collect();
         assert_eq!((seconds, records.len()), (vec![60.0, 120.0, 180.0], 201));
-        let off = ThinnedPositions { every_s: None, ..positions };
+        let off = ThinnedMeasurements { every_s: None, ..positions };
         assert_eq!(off.in_log(fixes.clone(), 1), fixes);
         assert!(positions.params().is_on() && !off.params().is_on());
     }
@@ -99,7 +118,8 @@ mod tests {
     fn simulated_truth_stays_and_its_measurement_errs() {
         let truth: Vec<Record> =
             (0..2000).map(|second| at(second, RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0)))).collect();
-        let positions = ThinnedPositions { sigma_m: 2.0, every_s: Some(1.0) };
+        let positions =
+            ThinnedMeasurements { sigma_m: Some(2.0), heading_sigma_deg: None, every_s: Some(1.0) };
         let records = positions.in_log(truth.clone(), 1);
         let errors: Vec<f64> = records
             .iter()
@@ -115,5 +135,25 @@ mod tests {
         let variance = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
         // Six standard deviations of the variance of 1999 samples.
         assert!(abs_diff_eq!(variance / 4.0, 1.0, epsilon = 6.0 * (2.0 / 1999.0_f64).sqrt()), "{variance}");
+    }
+
+    #[test]
+    fn what_has_a_sigma_is_measured() {
+        let truth = vec![
+            at(0, RecordData::TruePose(Pose2::identity())),
+            at(1, RecordData::TruePose(Pose2::new(1.0, 2.0, 0.5))),
+        ];
+        let quantity = |sigma_m, heading_sigma_deg| {
+            let measurements = ThinnedMeasurements { sigma_m, heading_sigma_deg, every_s: Some(1.0) };
+            let records = measurements.in_log(truth.clone(), 1);
+            records.into_iter().find_map(|record| match record.data {
+                RecordData::PoseMeasurement(measured) => Some(measured.quantity),
+                _ => None,
+            })
+        };
+        assert!(matches!(quantity(Some(0.1), None), Some(MeasuredQuantity::Position(_))));
+        assert!(matches!(quantity(None, Some(1.0)), Some(MeasuredQuantity::Heading(_))));
+        assert!(matches!(quantity(Some(0.1), Some(1.0)), Some(MeasuredQuantity::Pose(_))));
+        assert_eq!(quantity(None, None), None);
     }
 }
