@@ -89,6 +89,7 @@ impl ThinnedMeasurements {
 #[cfg(test)]
 mod tests {
     use approx::abs_diff_eq;
+    use wayfix_estimation_traits::LieGroup;
     use wayfix_sensor_log::TruePosition;
 
     use super::*;
