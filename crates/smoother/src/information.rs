@@ -8,14 +8,16 @@ const WRITTEN_DIGITS: f64 = 1e-6;
 /// Eigenvalues below zero by more than this share of the largest are negative; smaller ones are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Checks that the entries of a square matrix are finite, symmetric, and have no negative eigenvalue. Singular ones pass.
-pub(crate) fn check(entries: &[f64], residual: usize) -> Result<(), SmootherError> {
-    let n = (entries.len() as f64).sqrt() as usize;
-    let matrix = DMatrix::from_column_slice(n, n, entries);
-    if !entries.iter().all(|entry| entry.is_finite()) {
-        return Err(SmootherError::NotFinite { what: "the information", residual: Some(residual) });
+/// Checks that a matrix is square, finite, symmetric, and has no negative eigenvalue. Singular ones pass.
+pub(crate) fn check(matrix: &DMatrix<f64>, residual: usize) -> Result<(), SmootherError> {
+    let (what, n) = ("the information", matrix.nrows());
+    if !matrix.is_square() {
+        return Err(SmootherError::Shape { what, residual, expected: (n, n), got: matrix.shape() });
     }
-    let difference = (&matrix - matrix.transpose()).amax();
+    if !matrix.iter().all(|entry| entry.is_finite()) {
+        return Err(SmootherError::NotFinite { what, residual: Some(residual) });
+    }
+    let difference = (matrix - matrix.transpose()).amax();
     if difference > WRITTEN_DIGITS * matrix.amax() {
         return Err(SmootherError::AsymmetricInformation { difference });
     }

@@ -55,7 +55,7 @@ pub struct VariableId<X> {
     pub(crate) index: usize,
     /// Number among the variables of this type.
     pub(crate) slot: usize,
-    /// Unique in the graph: numbers of removed variables are used again.
+    /// Unique among all graphs: numbers of removed variables are used again.
     pub(crate) serial: u64,
     pub(crate) marker: PhantomData<fn() -> X>,
 }

@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, allocator::Allocator};
+use nalgebra::{DMatrix, DefaultAllocator, Dim, OMatrix, OVector, allocator::Allocator};
 use wayfix_estimation_traits::numerical_jacobian;
 
 use crate::{
@@ -43,6 +43,8 @@ pub trait VariableTuple<D: Dim>: Sized + 'static {
     fn value_rows(value: &Self::Value) -> &[f64];
     #[doc(hidden)]
     fn information_entries(information: &Self::Information) -> &[f64];
+    #[doc(hidden)]
+    fn information_matrix(information: &Self::Information) -> DMatrix<f64>;
     /// The entries of each Jacobian by columns, with the numbers of rows and columns.
     #[doc(hidden)]
     fn jacobian_entries(jacobians: &Self::Jacobians) -> Vec<(&[f64], usize, usize)>;
@@ -115,6 +117,9 @@ macro_rules! tuple {
             }
             fn information_entries(information: &Self::Information) -> &[f64] {
                 information.as_slice()
+            }
+            fn information_matrix(information: &Self::Information) -> DMatrix<f64> {
+                DMatrix::from_column_slice(information.nrows(), information.ncols(), information.as_slice())
             }
             fn jacobian_entries(jacobians: &Self::Jacobians) -> Vec<(&[f64], usize, usize)> {
                 vec![$((jacobians.$i.as_slice(), jacobians.$i.nrows(), jacobians.$i.ncols())),+]

@@ -1,6 +1,6 @@
 use nalgebra::DMatrix;
 
-use super::{G2oError, PoseGraph, RigidPose, linear_start};
+use super::{G2oError, LineProblem, PoseGraph, RigidPose, linear_start};
 use crate::{Graph, ResidualId, SmootherError, VariableId, information};
 
 /// What to do with information matrices that have negative eigenvalues.
@@ -52,11 +52,14 @@ impl<P: RigidPose> PoseGraph<P> {
         for edge in &self.edges {
             let Some(information) = check.usable(&edge.information, edge.line)? else { continue };
             let ids = (poses[edge.from], poses[edge.to]);
-            edges.push(P::add_edge(&mut graph, &edge.measured, ids, &information)?);
+            let added = P::add_edge(&mut graph, &edge.measured, ids, &information);
+            edges.push(added.map_err(|error| in_line(error, edge.line))?);
         }
         for edge in &self.point_edges {
             let Some(information) = check.usable(&edge.information, edge.line)? else { continue };
-            P::add_point_edge(&mut graph, &edge.measured, (poses[edge.from], points[edge.to]), &information)?;
+            let ids = (poses[edge.from], points[edge.to]);
+            let added = P::add_point_edge(&mut graph, &edge.measured, ids, &information);
+            added.map_err(|error| in_line(error, edge.line))?;
         }
         if repair == Repair::Refuse && check.n_indefinite > 0 {
             let total = self.edges.len() + self.point_edges.len();
@@ -107,13 +110,19 @@ impl<P: RigidPose> Problem<P> {
                 let ids: Vec<_> =
                     variables.iter().take(6).map(|index| file.vertex(*index).to_string()).collect();
                 let (n, ids) = (variables.len(), ids.join(", "));
-                G2oError::Undetermined(format!("no edge leads to {n} vertices: {ids}{}", more(n)))
+                let what = if n == 1 { "vertex" } else { "vertices" };
+                G2oError::Undetermined(format!("no edge leads to {n} {what}: {ids}{}", more(n)))
             }
             SmootherError::Unconstrained { directions, complete } => {
                 let name = |direction: &crate::UnconstrainedDirection| {
                     let coordinate = P::COORDINATES[direction.coordinate];
                     let (id, n) = (file.vertex(direction.variable), direction.n_moving);
-                    format!("{coordinate} of vertex {id} ({n} vertices move with it)")
+                    // Part of the directions are mixtures of all.
+                    if complete {
+                        format!("{coordinate} of vertex {id} ({n} vertices move with it)")
+                    } else {
+                        format!("{coordinate} of vertex {id}")
+                    }
                 };
                 let names: Vec<_> = directions.iter().take(6).map(name).collect();
                 let (n, names) = (directions.len(), names.join(", "));
@@ -121,8 +130,23 @@ impl<P: RigidPose> Problem<P> {
                 let what = if n == 1 { "direction" } else { "directions" };
                 G2oError::Undetermined(format!("no edge determines {least}{n} {what}: {names}{}", more(n)))
             }
+            SmootherError::NotFinite { residual: Some(residual), .. } => {
+                let lines = file.edges.iter().map(|edge| edge.line);
+                let mut lines = lines.chain(file.point_edges.iter().map(|edge| edge.line));
+                lines.nth(residual).map_or(G2oError::Smoother(error.clone()), |line| in_line(error, line))
+            }
             other => G2oError::Smoother(other),
         }
+    }
+}
+
+/// An error of the numbers of a line, with its number.
+fn in_line(error: SmootherError, line: usize) -> G2oError {
+    match error {
+        SmootherError::NotFinite { what, .. } => {
+            G2oError::Line { line, problem: LineProblem::TooLarge(what) }
+        }
+        other => G2oError::Smoother(other),
     }
 }
 
@@ -135,13 +159,13 @@ struct Check {
 
 impl Check {
     /// The matrix, repaired if wanted; `None` if it is indefinite, which is counted.
-    fn usable(&mut self, matrix: &DMatrix<f64>, line: usize) -> Result<Option<DMatrix<f64>>, SmootherError> {
-        match information::check(matrix.as_slice(), line) {
+    fn usable(&mut self, matrix: &DMatrix<f64>, line: usize) -> Result<Option<DMatrix<f64>>, G2oError> {
+        match information::check(matrix, line) {
             Ok(()) => return Ok(Some(matrix.clone())),
             Err(SmootherError::IndefiniteInformation { smallest, .. }) => {
                 self.smallest = self.smallest.min(smallest);
             }
-            Err(other) => return Err(other),
+            Err(other) => return Err(in_line(other, line)),
         }
         if self.n_indefinite == 0 {
             self.first_line = line;

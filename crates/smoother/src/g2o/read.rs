@@ -159,6 +159,13 @@ impl<P: RigidPose> Lines<P> {
                 None => return Err(G2oError::Line { line, problem: LineProblem::MissingSensor(sensor) }),
             };
             let (measured, information) = in_the_body(&sensor, &measured, &information);
+            let numbers = P::coordinates(&measured);
+            if !numbers.iter().chain(information.iter()).all(|number| number.is_finite()) {
+                return Err(G2oError::Line {
+                    line,
+                    problem: LineProblem::TooLarge("the measurement in the body frame"),
+                });
+            }
             point_edges.push(PointEdge { from, to, measured, information, line });
         }
         for (id, line) in &self.fixed {

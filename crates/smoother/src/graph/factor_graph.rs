@@ -124,7 +124,7 @@ impl Graph {
             return Err(SmootherError::SelfConnection { variable: *variable });
         }
         let index = self.next_residual;
-        information::check(R::Variables::information_entries(&information), index)?;
+        information::check(&R::Variables::information_matrix(&information), index)?;
         let mut single = Batch::<R>::default();
         single.push(residual, keys, information, index);
         single.check(&self.values)?;
@@ -151,7 +151,7 @@ impl Graph {
         id: ResidualId,
         information: Information<R>,
     ) -> Result<(), SmootherError> {
-        information::check(R::Variables::information_entries(&information), id.index)?;
+        information::check(&R::Variables::information_matrix(&information), id.index)?;
         let batch =
             self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
         batch.ok_or(SmootherError::UnknownId)?.set_information(id.index, information)

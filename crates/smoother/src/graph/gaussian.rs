@@ -33,7 +33,7 @@ impl Graph {
             let (what, expected, got) = ("the information", (n, n), information.shape());
             return Err(SmootherError::Shape { what, residual, expected, got });
         }
-        information::check(information.as_slice(), residual)?;
+        information::check(&information, residual)?;
         let points = variables.iter().map(|variable| self.values.linear_point(*variable)).collect();
         let (hessian, gradient) = ((&information + information.transpose()) * 0.5, DVector::zeros(n));
         self.add_prior(LinearPrior {

@@ -1,8 +1,15 @@
-use std::{any::Any, marker::PhantomData};
+use std::{
+    any::Any,
+    marker::PhantomData,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use nalgebra::DMatrix;
 
 use crate::{Variable, VariableId};
+
+/// Serial number of the next variable of any graph: an identifier of another graph is not one of this. Nothing is computed from it.
+static NEXT_SERIAL: AtomicU64 = AtomicU64::new(0);
 
 /// The values of all variables: one column for each type.
 #[derive(Default)]
@@ -10,7 +17,6 @@ pub struct Values {
     columns: Vec<Box<dyn Column>>,
     /// Column and slot of each variable.
     places: Vec<(usize, usize)>,
-    n_added: u64,
 }
 
 trait Column: Any + Send {
@@ -93,15 +99,14 @@ impl<X: Variable> Column for TypedColumn<X> {
 impl Clone for Values {
     fn clone(&self) -> Self {
         let columns = self.columns.iter().map(|c| c.copy()).collect();
-        Self { columns, places: self.places.clone(), n_added: self.n_added }
+        Self { columns, places: self.places.clone() }
     }
 }
 
 impl Values {
     /// Adds a variable. The number of a removed one of this type is used again.
     pub(crate) fn push<X: Variable>(&mut self, value: X) -> VariableId<X> {
-        let serial = self.n_added;
-        self.n_added += 1;
+        let serial = NEXT_SERIAL.fetch_add(1, Ordering::Relaxed);
         let next = self.places.len();
         let found = self.columns.iter().position(|column| column.as_any().is::<TypedColumn<X>>());
         let column = found.unwrap_or_else(|| {

@@ -30,19 +30,21 @@ pub(crate) fn run(graph: &mut Graph, params: &Params) -> Result<Summary, Smoothe
 
 fn stages(graph: &mut Graph, structure: &mut Structure, params: &Params) -> Result<Summary, SmootherError> {
     let start_cost = graph.cost();
-    let mut iterations = 0;
+    let (mut iterations, mut is_cut) = (0, false);
     if params.graduated {
         let largest =
             graph.batches.iter().map(|batch| batch.largest_graduated(&graph.values)).fold(0.0, f64::max);
         let mut mu = 2.0 * largest; // convex at all residuals [Yang et al. 2020, Remark 5]
-        while mu > 1.0 && mu.is_finite() {
+        // The last stage gets one iteration at least.
+        while mu > 1.0 && mu.is_finite() && iterations + 1 < params.max_iterations {
             let stage = Params { max_iterations: 1, ..*params };
             iterations += minimize(graph, structure, &stage, mu)?.iterations;
             mu /= STAGE;
         }
+        is_cut = mu > 1.0;
     }
     let left = params.max_iterations.saturating_sub(iterations).max(1);
     let last = minimize(graph, structure, &Params { max_iterations: left, ..*params }, 1.0)?;
-    let stop = if last.stop == Stop::Converged { Stop::Converged } else { last.stop };
+    let stop = if is_cut { Stop::IterationLimit } else { last.stop };
     Ok(Summary { start_cost, iterations: iterations + last.iterations, stop, ..last })
 }

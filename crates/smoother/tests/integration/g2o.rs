@@ -137,7 +137,33 @@ fn parts_that_never_meet_are_named_by_their_vertices() {
     let G2o::Planar(graph) = g2o::read(lonely.as_bytes()).unwrap() else { panic!("planar") };
     let mut problem = graph.problem(Repair::Refuse).unwrap();
     let error = problem.graph.optimize(&Params::default()).unwrap_err();
-    assert!(problem.named(&graph, error).to_string().contains("no edge leads to 1 vertices: 20"));
+    assert!(problem.named(&graph, error).to_string().contains("no edge leads to 1 vertex: 20"));
+}
+
+#[test]
+fn numbers_that_overflow_are_named_by_their_line() {
+    let text = format!("{PLANAR}EDGE_SE2 0 2 1e300 0 0 1 0 0 1 0 1\n");
+    let G2o::Planar(graph) = g2o::read(text.as_bytes()).unwrap() else { panic!("planar") };
+    let error = graph.problem(Repair::Refuse).err().unwrap();
+    let line_of_it = PLANAR.lines().count() + 1;
+    let is_named = |error: &G2oError| matches!(error, G2oError::Line { line, problem: LineProblem::TooLarge(_) } if *line == line_of_it);
+    assert!(is_named(&error), "{error}");
+}
+
+#[test]
+fn many_loose_parts_have_no_false_counts() {
+    let part = |at: usize| {
+        let (one, other) = (2 * at + 100, 2 * at + 101);
+        format!(
+            "VERTEX_SE2 {one} 0 0 0\nVERTEX_SE2 {other} 1 0 0\nEDGE_SE2 {one} {other} 1 0 0 1 0 0 1 0 1\n"
+        )
+    };
+    let text: String = std::iter::once(PLANAR.to_owned()).chain((0..60).map(part)).collect();
+    let G2o::Planar(graph) = g2o::read(text.as_bytes()).unwrap() else { panic!("planar") };
+    let mut problem = graph.problem(Repair::Refuse).unwrap();
+    let error = problem.graph.optimize(&Params::default()).unwrap_err();
+    let named = problem.named(&graph, error).to_string();
+    assert!(named.contains("at least 128 directions") && !named.contains("move with it"), "{named}");
 }
 
 #[test]

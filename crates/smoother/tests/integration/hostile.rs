@@ -11,7 +11,7 @@ use crate::common::world;
 use approx::{abs_diff_eq, assert_abs_diff_eq};
 use nalgebra::{Const, DVector, Dyn, Matrix1, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_smoother::{Between, Graph, Kernel, Method, Params, Prior, Residual, SmootherError};
+use wayfix_smoother::{Between, Graph, Kernel, Method, Params, Prior, Residual, SmootherError, Stop};
 
 fn pose(x: f64) -> Pose2<f64> {
     Pose2::new(x, 0.0, 0.0)
@@ -148,7 +148,12 @@ fn wrong_shapes_and_ids_are_refused() {
     let information = nalgebra::DMatrix::identity(3, 3);
     let error = graph.add(Growing, (a,), information).unwrap_err();
     assert!(matches!(error, SmootherError::Shape { expected: (3, 1), got: (2, 1), .. }), "{error}");
+    let two_by_three = nalgebra::DMatrix::zeros(2, 3);
+    let error = graph.add(Growing, (a,), two_by_three).unwrap_err();
+    assert!(matches!(error, SmootherError::Shape { what: "the information", got: (2, 3), .. }), "{error}");
     let mut other = Graph::new();
+    let like_a = other.add_variable(pose(0.0));
+    assert_eq!(graph.value(like_a), Err(SmootherError::UnknownId), "a pose of the same number elsewhere");
     let foreign = (other.add_variable(Vector2::new(0.0, 0.0)), other.add_variable(pose(0.0)));
     assert_eq!(graph.value(foreign.0), Err(SmootherError::UnknownId));
     assert!(graph.add(Range(1.0), (b, foreign.0), Matrix1::new(1.0)).is_err());
@@ -187,6 +192,18 @@ fn contradicting_closure_moves_little_under_a_robust_kernel() {
             "{kernel:?}: {moved}, without the closure {clean}"
         );
     }
+}
+
+#[test]
+fn graduated_stages_count_as_iterations() {
+    let mut world = world(9, 30, true);
+    let wrong = Between::new(Pose2::new(800.0, 500.0, 2.0));
+    let ends = (world.poses[2], world.poses[20]);
+    let id = world.graph.add(wrong, ends, Matrix3::identity() * 400.0).unwrap();
+    world.graph.set_kernel(id, Kernel::GemanMcClure { c: 4.0 }).unwrap();
+    let params = Params { graduated: true, max_iterations: 5, ..Params::default() };
+    let summary = world.graph.optimize(&params).unwrap();
+    assert_eq!((summary.iterations, summary.stop), (5, Stop::IterationLimit));
 }
 
 #[test]

@@ -40,9 +40,10 @@ pub(super) struct Arguments {
     /// Print one JSON object instead of a table: `{"metrics": {name: number}, "events": {name: count}, "seed": n}`.
     #[arg(long)]
     json: bool,
-    /// Start of the optimization: the poses of the file, or a linear solution for rotations and then positions, which does not depend on them.
-    #[arg(long, value_enum, default_value_t = Start::Linear)]
-    start: Start,
+    /// Start of the optimization: the poses of the file, or a linear solution for rotations and then positions, which does not depend on them
+    /// [default: linear; with --kernel: file, since a wrong loop closure has its whole weight in the linear solution].
+    #[arg(long, value_enum)]
+    start: Option<Start>,
     /// Method of the optimization steps.
     #[arg(long, value_enum, default_value_t = StepMethod::LevenbergMarquardt)]
     method: StepMethod,
@@ -61,7 +62,7 @@ pub(super) struct Arguments {
     repair: bool,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Start {
     File,
     Linear,
@@ -173,14 +174,23 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
     };
 
     let stopwatch = Stopwatch::start();
-    let is_linear = matches!(arguments.start, Start::Linear) && problem.start_linearly(&file)?;
+    let default = if arguments.kernel.is_some() { Start::File } else { Start::Linear };
+    let is_linear_wanted = arguments.start.unwrap_or(default) == Start::Linear;
+    let is_linear = is_linear_wanted && problem.start_linearly(&file)?;
     let result = problem.graph.optimize(&params);
     let seconds = stopwatch.elapsed().as_secs_f64();
     let summary = result.map_err(|error| problem.named(&file, error)).with_context(|| name.clone())?;
-    if summary.stop == Stop::IterationLimit {
+    let is_cut = summary.stop == Stop::IterationLimit;
+    if is_cut {
         warnings.push(format!("not converged after {} iterations", summary.iterations));
     }
-    if !is_linear && matches!(arguments.start, Start::Linear) {
+    if summary.cost > start_cost {
+        warnings.push(format!(
+            "the cost at the end, {:.6}, is higher than that of the poses of the file, {start_cost:.6}: there is a better minimum (try another --start or --kernel)",
+            summary.cost
+        ));
+    }
+    if !is_linear && is_linear_wanted {
         warnings.push("there is no linear start: edges between poses do not reach all of them".to_owned());
     }
 
@@ -199,7 +209,10 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
         ],
         seconds,
         timings: vec![Metric::new("time_ms", seconds * 1e3, "ms")],
-        events: BTreeMap::from([("repaired_information".to_owned(), problem.n_repaired as u64)]),
+        events: BTreeMap::from([
+            ("repaired_information".to_owned(), problem.n_repaired as u64),
+            ("not_converged".to_owned(), u64::from(is_cut)),
+        ]),
         warnings,
         ..ReportRun::default()
     };
