@@ -111,7 +111,8 @@ def main():
             plain.write_bytes(gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes())
             commands = [[word.replace("{}", str(plain)) for word in command] for command in programs.values()]
             results = [repeated(command) for command in commands]
-            best = min(found[0] for runs in results for found in runs if found)
+            # The others may report the cost of another residual.
+            best = min(found[0] for runs in results[:2] for found in runs if found)
             cells = [cell(runs, best) for runs in results]
             print(f"| {name} | {best:.8g} |", " | ".join(cells), "|", flush=True)
             plain.unlink()

@@ -52,12 +52,13 @@ pub(crate) fn build(program: &str) -> Command {
 /// Environment variable with features for [`program`] and [`build`]: those of the tests, so that CI compiles each crate once.
 pub(crate) const FEATURES: &str = "XTASK_FEATURES";
 
-/// `--bin` without a package: the features of dependencies are those of the whole workspace then, as in the tests.
+/// The program alone, with what it needs; with [`FEATURES`] those of the whole workspace, as in the tests.
 fn cargo(verb: &str, program: &str) -> Command {
     let mut command = command("cargo", &[verb, "--quiet", "--locked", "--bin", program]);
-    if let Ok(features) = std::env::var(FEATURES) {
-        command.args(["--features", &features]);
-    }
+    match std::env::var(FEATURES) {
+        Ok(features) => command.args(["--features", &features]),
+        Err(_) => command.args(["--package", program]),
+    };
     command
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
         plot("Places", "m", places),
         plot("Robot error", "m", robot),
         plot("Landmark error", "m", landmark),
-        plot("Kalman gains", "", gains),
+        plot("Kalman gains", "gain", gains),
     ]
     .iter()
     .map(LinePlot::draw)

@@ -30,6 +30,7 @@ where
     metrics.extend(of_map);
     let n_landmarks = run.system.filter().n_landmarks();
     let events = run.events();
+    let has_failed = events.get("smoother_failed") > 0;
     let n_rejected = REJECTIONS.map(|name| events.get(name)).iter().sum::<u64>();
     metrics.push(Metric::new("n_landmarks", n_landmarks as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
@@ -42,6 +43,14 @@ where
     }
     if let Some(batch) = reference {
         compare_with_batch(&batch, &mut summary);
+    }
+    let has = |name: &str| summary.metrics.iter().any(|metric| metric.name == name);
+    if has("ate_aligned_rmse_m") && !has("batch_ate_aligned_rmse_m") && !has_failed {
+        let why = match &run.smoothed {
+            Some(_) => "the smoother's estimates are the result",
+            None => "there is one for landmarks that are points, in runs that begin without a map",
+        };
+        summary.notes.push(format!("No batch to compare with: {why}."));
     }
     summary
 }

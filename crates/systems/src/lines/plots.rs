@@ -36,7 +36,7 @@ pub fn plots(system: &LineExtractionSystem) -> Result<Vec<SvgPlot>, PlotError> {
 
 fn map(system: &LineExtractionSystem) -> MapPlot {
     let placed = || system.sample().iter().filter_map(|scan| Some((scan.pose?, scan)));
-    let path = placed().map(|(pose, _)| (pose.x(), pose.y())).collect();
+    let path = system.path().to_vec();
     let walls = placed().flat_map(|(pose, scan)| {
         scan.segments.iter().map(move |s| line(pose.transform(&s.start), pose.transform(&s.end)))
     });

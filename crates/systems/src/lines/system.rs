@@ -14,6 +14,7 @@ pub struct LineExtractionSystem {
     pose: Option<(Stamp, Pose2<f64>)>,
     mount: Pose2<f64>,
     sample: Decimated<ScanWalls>,
+    path: Decimated<(f64, f64)>,
     latest: Option<ScanWalls>,
     pub(super) totals: LineTotals,
     true_walls: Vec<TrueWall>,
@@ -23,6 +24,8 @@ pub struct LineExtractionSystem {
 
 /// Scans that are kept for pictures.
 const MOST_SCANS: usize = 256;
+/// Positions of the laser that are kept for the path: between the scans of a long log it would cut corners.
+const MOST_PATH_POINTS: usize = 16_384;
 
 /// A scan and the walls in it.
 #[derive(Clone, Debug)]
@@ -51,6 +54,7 @@ impl LineExtractionSystem {
             pose: None,
             mount: Pose2::identity(),
             sample: Decimated::new(MOST_SCANS),
+            path: Decimated::new(MOST_PATH_POINTS),
             latest: None,
             totals: LineTotals::default(),
             true_walls: Vec::new(),
@@ -62,6 +66,11 @@ impl LineExtractionSystem {
     /// Some of the processed scans, evenly spaced: all of a short log, at most 256 of a long one.
     pub fn sample(&self) -> &[ScanWalls] {
         self.sample.kept()
+    }
+
+    /// Positions of the laser at the processed scans with a pose, m; of a long log evenly spaced ones.
+    pub fn path(&self) -> &[(f64, f64)] {
+        self.path.kept()
     }
 
     /// The last processed scan.
@@ -92,6 +101,9 @@ impl LineExtractionSystem {
         let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
         let step = stopwatch.elapsed();
         let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose.compose(&self.mount));
+        if let Some(pose) = pose {
+            self.path.push((pose.x(), pose.y()));
+        }
         self.events.add("beam_without_echo", found.counts.skipped() as u64);
         let scan = ScanWalls { stamp, pose, echoes, segments: found.segments, step };
         self.totals.add(&scan, &self.true_walls);

@@ -61,7 +61,7 @@ impl<'a> Outputs<'a> {
     pub(super) fn sinks(&mut self) -> Result<MessageSinks> {
         let mut sinks: MessageSinks = Vec::new();
         if let Some(path) = self.file(ESTIMATES).filter(|_| !self.common.no_mcap) {
-            sinks.push(Box::new(McapMessageSink::create(path)?));
+            sinks.push(Box::new(McapMessageSink::create_compressed(path)?));
             self.log = Some(ESTIMATES);
         }
         sinks.extend(self.live.as_ref().map(Live::sink));
