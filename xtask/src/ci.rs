@@ -67,6 +67,8 @@ fn steps() -> Result<Vec<Step>> {
         task("spelling", &["spelling"]),
         task("licenses", &["licenses"]),
         step("clippy", &["clippy", "--workspace", "--all-targets", LIVE, "--locked", "--", "-D", "warnings"]),
+        // As `cargo xtask regress` builds it for users: without the features of other packages.
+        step("default-run", &["check", "--package", "wayfix-experiments", "--locked"]),
         tests,
         step("doctests", &["test", "--workspace", LIVE, "--doc", "--locked"]),
         task("docs", &["docs"]),
@@ -114,6 +116,6 @@ mod tests {
     #[test]
     fn an_unknown_step_is_refused_with_the_list_of_steps() {
         let error = run(&["--from".into(), "lunch".into()]).unwrap_err();
-        assert!(error.to_string().contains("fmt tidy spelling licenses clippy tests"), "{error}");
+        assert!(error.to_string().contains("fmt tidy spelling licenses clippy default-run tests"), "{error}");
     }
 }

@@ -52,7 +52,7 @@ pub(crate) fn build(program: &str) -> Command {
 /// Environment variable with features for [`program`] and [`build`]: those of the tests, so that CI compiles each crate once.
 pub(crate) const FEATURES: &str = "XTASK_FEATURES";
 
-/// The program alone, with what it needs; with [`FEATURES`] those of the whole workspace, as in the tests.
+/// Without [`FEATURES`] cargo builds the package of the program alone; with them, with the features of the whole workspace, as the tests do.
 fn cargo(verb: &str, program: &str) -> Command {
     let mut command = command("cargo", &[verb, "--quiet", "--locked", "--bin", program]);
     match std::env::var(FEATURES) {

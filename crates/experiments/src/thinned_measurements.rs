@@ -40,7 +40,7 @@ impl ThinnedMeasurements {
             let stamp = record.stamp;
             let is_due = stamp.seconds_since(last) >= every;
             match &record.data {
-                RecordData::TruePosition(fix) if is_due => {
+                RecordData::TruePosition(fix) if is_due && self.sigma_m.is_some() => {
                     last = stamp;
                     let position = MeasuredQuantity::Position(Vector2::new(fix.x, fix.y));
                     with_measurements.push(self.measurement(stamp, position));
@@ -144,14 +144,18 @@ mod tests {
             at(0, RecordData::TruePose(Pose2::identity())),
             at(1, RecordData::TruePose(Pose2::new(1.0, 2.0, 0.5))),
         ];
-        let quantity = |sigma_m, heading_sigma_deg| {
+        let measured = |sigma_m, heading_sigma_deg| {
             let measurements = ThinnedMeasurements { sigma_m, heading_sigma_deg, every_s: Some(1.0) };
             let records = measurements.in_log(truth.clone(), 1);
             records.into_iter().find_map(|record| match record.data {
-                RecordData::PoseMeasurement(measured) => Some(measured.quantity),
+                RecordData::PoseMeasurement(measured) => Some(measured),
                 _ => None,
             })
         };
+        let quantity = |sigma_m, heading_sigma_deg| Some(measured(sigma_m, heading_sigma_deg)?.quantity);
+        let covariance = measured(Some(0.1), Some(180.0)).and_then(|measured| measured.covariance).unwrap();
+        let expected = Vector3::new(0.1 * 0.1, 0.1 * 0.1, std::f64::consts::PI.powi(2));
+        assert!(abs_diff_eq!(covariance, Matrix3::from_diagonal(&expected), epsilon = 1e-12), "{covariance}");
         assert!(matches!(quantity(Some(0.1), None), Some(MeasuredQuantity::Position(_))));
         assert!(matches!(quantity(None, Some(1.0)), Some(MeasuredQuantity::Heading(_))));
         assert!(matches!(quantity(Some(0.1), Some(1.0)), Some(MeasuredQuantity::Pose(_))));

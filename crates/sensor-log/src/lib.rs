@@ -17,6 +17,7 @@
 //! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
 //! The features `lz4` and `zstd` (on by default) read compressed chunks of MCAP by C libraries. Without them such a chunk counts as damaged, with the reason.
+//! [`McapMessageSink::create_compressed`] needs `zstd`.
 //!
 //! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```

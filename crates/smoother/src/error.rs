@@ -12,7 +12,7 @@ pub enum SmootherError {
         /// Its value.
         value: f64,
     },
-    /// An identifier of another graph.
+    /// An identifier that this graph does not have. A residual of another graph is told by its number and type only.
     #[error("a variable or residual does not belong to this graph")]
     UnknownId,
     /// A residual that names the same variable twice.

@@ -19,8 +19,8 @@ struct DriveLikelihood {
     information: f64,
 }
 
-/// The Fisher information by its definition, the mean square of the gradient over drives, beside the sum that the filter computes, and the
-/// mean log-likelihood beside its expectation. [Andrade-Cetto 2005, Eqs. 10–14]
+/// Compares the Fisher information by its definition, the mean square of the gradient over drives, with the sum that the filter computes, and the
+/// mean log-likelihood with its expectation. [Andrade-Cetto 2005, Eqs. 10–14]
 ///
 /// # Errors
 /// Returns an error if the filter refuses, which it has no reason to.

@@ -16,9 +16,10 @@ use wayfix_estimation_traits::{
     nalgebra::{Matrix3, Vector2},
 };
 use wayfix_sensor_log::{
-    AckermannDrive, Detection, DetectionTarget, LaserScan, LogCompleteness, LogError, LogFormat,
-    LogOpenOptions, McapWriter, MeasuredQuantity, PoseKind, PoseMeasurement, Record, RecordData,
-    RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open, topics, write,
+    AckermannDrive, Detection, DetectionTarget, FoxgloveMessageWriter, LaserScan, LogCompleteness, LogError,
+    LogFormat, LogOpenOptions, McapMessageSink, McapWriter, MeasuredQuantity, PoseKind, PoseMeasurement,
+    Record, RecordData, RowProblemKind, Stamp, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open,
+    topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -271,6 +272,34 @@ fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
     let (records, report) = open(&path, &LogOpenOptions::default()).unwrap().read_all();
     assert_eq!((records.len(), report.problems[&RowProblemKind::Inconsistent]), (1, 1));
 }
+
+#[cfg(feature = "zstd")]
+#[test]
+fn compressed_files_are_smaller_equal_and_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |second: u64| Record {
+        stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
+        data: RecordData::TruePose(Pose2::new(second as f64, 0.5, 0.1)),
+    };
+    let records: Vec<Record> = (0..5000).map(at).collect();
+    let written = |name: &str, sink: fn(&std::path::Path) -> Sink| {
+        let path = folder.path().join(name);
+        let mut writer = FoxgloveMessageWriter::into_sink(sink(&path));
+        records.iter().for_each(|record| writer.record(record).unwrap());
+        writer.finish().unwrap();
+        let read: Vec<Record> = open(&path, &LogOpenOptions::default()).unwrap().collect();
+        assert_eq!(read, records, "{name}");
+        std::fs::read(path).unwrap()
+    };
+    let plain = written("plain.mcap", |path| McapMessageSink::create(path).unwrap());
+    let one = written("one.mcap", |path| McapMessageSink::create_compressed(path).unwrap());
+    let other = written("other.mcap", |path| McapMessageSink::create_compressed(path).unwrap());
+    assert_eq!(one, other);
+    assert!(2 * one.len() < plain.len(), "{} of {} bytes", one.len(), plain.len());
+}
+
+#[cfg(feature = "zstd")]
+type Sink = McapMessageSink<std::io::BufWriter<std::fs::File>>;
 
 #[test]
 fn what_cannot_be_stored_is_refused() {

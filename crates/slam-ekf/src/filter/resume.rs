@@ -1,11 +1,12 @@
-use nalgebra::{DMatrix, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
+use nalgebra::{DMatrix, DefaultAllocator, DimName, allocator::Allocator};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
+use wayfix_gaussian_core::GaussianError;
 
 use super::{
     EkfSlam, SlamParams,
     map::check_finite,
     map_management::retire::Retired,
-    predict::{LARGEST_VARIANCE, check_covariance, not_positive_definite},
+    predict::{LARGEST_VARIANCE, check_covariance},
     state::Slot,
 };
 use crate::{
@@ -159,8 +160,8 @@ fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<DMatrix<f64>, Sla
         return Err(SlamError::NotFinite { what });
     }
     let joint = from_lower(dimension, lower);
-    if joint.diagonal().min() < 0.0 || !is_semidefinite(&joint) {
-        return Err(not_positive_definite(what, &joint));
+    if let Some(value) = negative_pivot(&joint) {
+        return Err(SlamError::NotACovariance { what, value, asymmetry: 0.0 });
     }
     Ok(joint)
 }
@@ -188,8 +189,12 @@ fn from_lower(dimension: usize, lower: &[f64]) -> DMatrix<f64> {
     covariance
 }
 
-/// Whether the correlations are positive semidefinite up to the rounding errors of a long run.
-fn is_semidefinite(covariance: &DMatrix<f64>) -> bool {
+/// The negative variance, or the pivot of the correlations that fails, up to the rounding errors of a long run; `None` of a covariance.
+fn negative_pivot(covariance: &DMatrix<f64>) -> Option<f64> {
+    let smallest_variance = covariance.diagonal().min();
+    if smallest_variance < 0.0 {
+        return Some(smallest_variance);
+    }
     let deviations = covariance.diagonal().map(f64::sqrt);
     let correlations =
         DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {
@@ -199,7 +204,11 @@ fn is_semidefinite(covariance: &DMatrix<f64>) -> bool {
                 entry => entry / deviations[row] / deviations[column],
             }
         });
-    Cholesky::new(correlations).is_some()
+    match wayfix_gaussian_core::cholesky("correlations", &correlations) {
+        Err(GaussianError::NotPositiveDefinite { value, .. }) => Some(value),
+        Err(_) => Some(f64::NAN),
+        Ok(_) => None,
+    }
 }
 
 /// Eigenvalues of the correlation matrix above minus this count as zero. The filter's own rounding stays within some thousand ε.

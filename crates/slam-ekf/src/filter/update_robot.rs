@@ -124,10 +124,7 @@ where
             rows.push_row(row.iter().copied(), 0, []);
         }
         let residual = residual.column(0).into_owned();
-        let step = self
-            .covariance
-            .correct(&rows, &noise, &residual)
-            .ok_or_else(|| not_positive_definite(what, &covariance))?;
+        let step = self.covariance.correct(&rows, &noise, &residual).ok_or(SlamError::NotFinite { what })?;
         self.step(&step);
         Ok(RobotInnovation { nis, jacobian, covariance })
     }

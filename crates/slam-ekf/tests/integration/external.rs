@@ -135,6 +135,11 @@ fn a_stated_covariance_has_noise_in_what_is_measured() {
     assert!(is_refused(diagonal(0.0, 1.0, 1.0), true, false));
     assert!(is_refused(diagonal(1.0, 1.0, 0.0), true, true));
     assert!(is_refused(diagonal(1.0, 1.0, -1.0), false, true));
+    assert!(is_refused(diagonal(1.0, 1.0, 0.0), false, true));
+    let text = params.covariance(diagonal(0.0, 1.0, 1.0), true, false).unwrap_err().to_string();
+    assert_eq!(text, "its covariance is not positive definite (pivot 0 is 0e0)");
+    let without_noise = ExternalParams { position_sigma: Some(0.0), ..ExternalParams::default() };
+    assert_eq!(without_noise.covariance(None, true, false), Err(ExternalError::NoCovariance));
     assert!(is_refused(Some(Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0)), true, false));
     let position = diagonal(1.0, 1.0, 0.0); // of a position: it says nothing of the heading
     assert_eq!(params.covariance(position, true, false).ok(), position);

@@ -46,9 +46,11 @@ where
     }
     let has = |name: &str| summary.metrics.iter().any(|metric| metric.name == name);
     if has("ate_aligned_rmse_m") && !has("batch_ate_aligned_rmse_m") && !has_failed {
-        let why = match &run.smoothed {
-            Some(_) => "the smoother's estimates are the result",
-            None => "there is one for landmarks that are points, in runs that begin without a map",
+        let is_smoothed = run.smoothed.as_ref().is_some_and(|smoothed| !smoothed.is_batch);
+        let why = if is_smoothed {
+            "the smoother's estimates are the result"
+        } else {
+            "`wayfix run slam` makes one for landmarks that are points, if it begins without a map"
         };
         summary.notes.push(format!("No batch to compare with: {why}."));
     }

@@ -87,9 +87,9 @@ pub enum LineProblem {
     /// A sensor without a line `PARAMS_SE3OFFSET`.
     #[error("there is no sensor {0}")]
     MissingSensor(u64),
-    /// Numbers whose products overflow.
-    #[error("{0} is not finite: the numbers of the line or of its vertices are too large")]
-    TooLarge(&'static str),
+    /// Numbers whose products overflow, in the line or in the poses of its vertices.
+    #[error("{0} is not finite at the present poses")]
+    NotFinite(&'static str),
     /// 2-d and 3-d lines in one file.
     #[error("2-d and 3-d lines are mixed")]
     MixedDimensions,

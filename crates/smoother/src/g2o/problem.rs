@@ -31,7 +31,7 @@ impl<P: RigidPose> PoseGraph<P> {
     /// The least squares problem at the present poses. The cost is $`\sum e^T Ω e`$ with the logarithm of the whole group.
     ///
     /// # Errors
-    /// [`G2oError::Indefinite`], and as [`Graph::add`].
+    /// [`G2oError::Indefinite`], [`G2oError::Line`] for numbers that overflow, and as [`Graph::add`].
     pub fn problem(&self, repair: Repair) -> Result<Problem<P>, G2oError> {
         let mut graph = Graph::new();
         let poses: Vec<_> = self.poses.iter().map(|(_, pose)| graph.add_variable(*pose)).collect();
@@ -117,7 +117,7 @@ impl<P: RigidPose> Problem<P> {
                 let name = |direction: &crate::UnconstrainedDirection| {
                     let coordinate = P::COORDINATES[direction.coordinate];
                     let (id, n) = (file.vertex(direction.variable), direction.n_moving);
-                    // Part of the directions are mixtures of all.
+                    // While some directions are unknown, the others are mixtures of all, and their counts mean nothing.
                     if complete {
                         format!("{coordinate} of vertex {id} ({n} vertices move with it)")
                     } else {
@@ -144,7 +144,7 @@ impl<P: RigidPose> Problem<P> {
 fn in_line(error: SmootherError, line: usize) -> G2oError {
     match error {
         SmootherError::NotFinite { what, .. } => {
-            G2oError::Line { line, problem: LineProblem::TooLarge(what) }
+            G2oError::Line { line, problem: LineProblem::NotFinite(what) }
         }
         other => G2oError::Smoother(other),
     }

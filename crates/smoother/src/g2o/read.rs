@@ -159,13 +159,16 @@ impl<P: RigidPose> Lines<P> {
                 None => return Err(G2oError::Line { line, problem: LineProblem::MissingSensor(sensor) }),
             };
             let (measured, information) = in_the_body(&sensor, &measured, &information);
-            let numbers = P::coordinates(&measured);
-            if !numbers.iter().chain(information.iter()).all(|number| number.is_finite()) {
-                return Err(G2oError::Line {
-                    line,
-                    problem: LineProblem::TooLarge("the measurement in the body frame"),
-                });
-            }
+            let finite = |what, numbers: &[f64]| {
+                let problem = LineProblem::NotFinite(what);
+                numbers
+                    .iter()
+                    .all(|number| number.is_finite())
+                    .then_some(())
+                    .ok_or(G2oError::Line { line, problem })
+            };
+            finite("the measurement in the body frame", &P::coordinates(&measured))?;
+            finite("the information in the body frame", information.as_slice())?;
             point_edges.push(PointEdge { from, to, measured, information, line });
         }
         for (id, line) in &self.fixed {

@@ -41,7 +41,7 @@ fn stages(graph: &mut Graph, structure: &mut Structure, params: &Params) -> Resu
             iterations += minimize(graph, structure, &stage, mu)?.iterations;
             mu /= STAGE;
         }
-        is_cut = mu > 1.0;
+        is_cut = mu > 1.0 && mu.is_finite();
     }
     let left = params.max_iterations.saturating_sub(iterations).max(1);
     let last = minimize(graph, structure, &Params { max_iterations: left, ..*params }, 1.0)?;

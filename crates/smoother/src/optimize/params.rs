@@ -17,7 +17,7 @@ pub enum Method {
 pub struct Params {
     /// How to take a step. Default Levenberg–Marquardt.
     pub method: Method,
-    /// Most iterations. Default 100, as GTSAM has it.
+    /// Most iterations, stages of graduated non-convexity included. Default 100, as GTSAM has it.
     pub max_iterations: usize,
     /// Stops after a step whose predicted decrease is below this share of the cost. Default 1e-8.
     pub relative_decrease: f64,

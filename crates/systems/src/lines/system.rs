@@ -24,7 +24,7 @@ pub struct LineExtractionSystem {
 
 /// Scans that are kept for pictures.
 const MOST_SCANS: usize = 256;
-/// Positions of the laser that are kept for the path: between the scans of a long log it would cut corners.
+/// Positions of the laser that are kept for the path, as many as a picture has pixels for: a path through the kept scans would cut corners.
 const MOST_PATH_POINTS: usize = 16_384;
 
 /// A scan and the walls in it.

@@ -95,6 +95,9 @@ impl KernelName {
     }
 }
 
+/// Two costs that differ less, absolutely or relatively, are those of one minimum.
+const SAME_COST: f64 = 1e-6;
+
 const EXAMPLES: &str = "\
 Lines of the file:
   VERTEX_SE2 id x y θ                              EDGE_SE2 i j x y θ I11 I12 I13 I22 I23 I33
@@ -184,7 +187,7 @@ fn optimize<P: RigidPose>(mut file: PoseGraph<P>, arguments: &Arguments) -> Resu
     if is_cut {
         warnings.push(format!("not converged after {} iterations", summary.iterations));
     }
-    if summary.cost > start_cost {
+    if !is_cut && summary.cost - start_cost > SAME_COST * (1.0 + start_cost) {
         warnings.push(format!(
             "the cost at the end, {:.6}, is higher than that of the poses of the file, {start_cost:.6}: there is a better minimum (try another --start or --kernel)",
             summary.cost

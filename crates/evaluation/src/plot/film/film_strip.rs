@@ -50,7 +50,8 @@ impl FilmStrip {
         let row_height = LINE + height + LINE;
         let total = row_height * self.rows.len() as f64;
         let headings = self.rows.iter().map(|(heading, _)| heading.as_str()).filter(|text| !text.is_empty());
-        let alt = format!("{}: {}", self.title, headings.collect::<Vec<_>>().join("; "));
+        let headings: Vec<&str> = std::iter::once(self.title.as_str()).chain(headings).collect();
+        let alt = headings.join("; ");
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{total:.0}\" viewBox=\"0 0 {WIDTH} {total:.0}\" \
              role=\"img\" aria-label=\"{}\" font-size=\"{FONT_SIZE}\">\n",
@@ -80,7 +81,7 @@ impl FilmStrip {
 
 fn write_text(svg: &mut String, x: f64, y: f64, text: &str) {
     if text.is_empty() {
-        return; // Readers of screens announce an empty text.
+        return; // Screen readers announce an empty text.
     }
     let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"var(--muted)\">{}</text>", escape(text));
 }

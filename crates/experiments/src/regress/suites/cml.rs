@@ -30,7 +30,7 @@ struct Settings {
     poses: Option<PathBuf>,
     /// Names of its columns.
     columns: Option<String>,
-    /// Positions of the log as measurements of an external sensor.
+    /// Poses of the log as measurements of an external sensor.
     external: Option<ThinnedMeasurements>,
 }
 

@@ -34,7 +34,7 @@ struct Settings {
     /// Whether a smoother estimates points, with a fixed lag.
     #[serde(default)]
     smoother: bool,
-    /// Positions of the log as measurements of an external sensor.
+    /// Poses of the log as measurements of an external sensor.
     external: Option<ThinnedMeasurements>,
     /// File of known relations between poses, relative to the folder of recordings.
     relations: Option<PathBuf>,

@@ -25,7 +25,7 @@ pub struct FoxgloveMessageWriter<S: FoxgloveMessageSink> {
 
 /// Writes records and drawings to an MCAP file for Foxglove and Rerun.
 ///
-/// Equal calls give equal bytes: no compression, no clock, no library version. [`finish`](FoxgloveMessageWriter::finish) completes the file.
+/// Equal calls give equal bytes: no compression by default, no clock, no library version. [`finish`](FoxgloveMessageWriter::finish) completes the file.
 /// ```
 /// use std::io::Cursor;
 /// use wayfix_estimation_traits::Pose2;

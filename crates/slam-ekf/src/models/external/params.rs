@@ -39,7 +39,7 @@ pub enum ExternalError {
     /// It has no covariance, and the parameters have none.
     #[error("it has no covariance (`external.position_sigma`, `external.heading_sigma`)")]
     NoCovariance,
-    /// What it states is no covariance: a measurement without noise is none.
+    /// Its stated covariance is not positive definite in what it measures.
     #[error(transparent)]
     Covariance(#[from] GaussianError),
     /// The filter refuses it.
@@ -74,7 +74,7 @@ impl ExternalParams {
     /// The covariance of `(x, y, θ)` that the sensor states, else that of the parameters.
     ///
     /// # Errors
-    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured, [`ExternalError::Covariance`] if the stated one is not
+    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured, or the parameters have a sigma that is not positive, [`ExternalError::Covariance`] if the stated one is not
     /// positive definite in what is measured.
     pub fn covariance(
         &self,
@@ -82,19 +82,20 @@ impl ExternalParams {
         has_position: bool,
         has_heading: bool,
     ) -> Result<Matrix3<f64>, ExternalError> {
-        let sigma = |is_measured: bool, sigma: Option<f64>| if is_measured { sigma } else { Some(0.0) };
+        let sigma = |is_measured: bool, sigma: Option<f64>| {
+            if is_measured { sigma.filter(|sigma| *sigma > 0.0) } else { Some(0.0) }
+        };
         let sigmas = sigma(has_position, self.position_sigma).zip(sigma(has_heading, self.heading_sigma));
         let assumed = sigmas.map(|(position, heading)| {
             Matrix3::from_diagonal(&Vector3::new(position, position, heading).map(|sigma| sigma * sigma))
         });
-        let covariance = stated.or(assumed).ok_or(ExternalError::NoCovariance)?;
-        let what = "covariance of a measured pose";
+        let Some(stated) = stated else { return assumed.ok_or(ExternalError::NoCovariance) };
         match (has_position, has_heading) {
-            (true, true) => check_covariance(what, &covariance)?,
-            (true, false) => check_covariance(what, &covariance.fixed_view::<2, 2>(0, 0).into_owned())?,
-            (false, true) => check_covariance(what, &Matrix1::new(covariance.m33))?,
+            (true, true) => check_covariance("its", &stated)?,
+            (true, false) => check_covariance("its", &stated.fixed_view::<2, 2>(0, 0).into_owned())?,
+            (false, true) => check_covariance("its", &Matrix1::new(stated.m33))?,
             (false, false) => {}
         }
-        Ok(covariance)
+        Ok(stated)
     }
 }

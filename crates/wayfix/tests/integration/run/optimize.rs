@@ -84,6 +84,19 @@ fn kernels_limit_the_weight_of_a_wrong_closure() {
 }
 
 #[test]
+fn a_run_that_is_cut_and_a_worse_end_are_said() {
+    let scratch = Scratch::new();
+    let graph = scratch.file("square.g2o", SQUARE);
+    let solved = scratch.path("solved.g2o");
+    let [graph, solved] = [&graph, &solved].map(|path| path.to_str().unwrap().to_owned());
+    let cut = wayfix(["optimize", &graph, "--start", "file", "--max-iterations", "1", "--json"]);
+    assert!(cut.stdout.contains("\"not_converged\":1"), "{}", cut.stdout);
+    assert!(wayfix(["optimize", &graph, "--graph-out", &solved]).code == 0);
+    let again = wayfix(["optimize", &solved, "--json"]);
+    assert!(again.stdout.contains("\"not_converged\":0") && !again.stderr.contains("better minimum"));
+}
+
+#[test]
 fn bad_graphs_are_refused_with_the_line_or_the_vertex() {
     let scratch = Scratch::new();
     let two_parts =
