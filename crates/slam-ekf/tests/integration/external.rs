@@ -138,8 +138,13 @@ fn a_stated_covariance_has_noise_in_what_is_measured() {
     assert!(is_refused(diagonal(1.0, 1.0, 0.0), false, true));
     let text = params.covariance(diagonal(0.0, 1.0, 1.0), true, false).unwrap_err().to_string();
     assert_eq!(text, "its covariance is not positive definite (pivot 0 is 0e0)");
-    let without_noise = ExternalParams { position_sigma: Some(0.0), ..ExternalParams::default() };
-    assert_eq!(without_noise.covariance(None, true, false), Err(ExternalError::NoCovariance));
+    for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let params = ExternalParams { position_sigma: Some(sigma), ..ExternalParams::default() };
+        assert!(matches!(params.check(), Err(SlamError::Parameter { name: "external.position_sigma", .. })));
+    }
+    let beyond_the_pole = ExternalParams { datum: Some([100.0, 0.0]), ..ExternalParams::default() };
+    assert!(matches!(beyond_the_pole.check(), Err(SlamError::Parameter { name: "external.datum", .. })));
+    assert_eq!(ExternalParams::default().check(), Ok(()));
     assert!(is_refused(Some(Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0)), true, false));
     let position = diagonal(1.0, 1.0, 0.0); // of a position: it says nothing of the heading
     assert_eq!(params.covariance(position, true, false).ok(), position);

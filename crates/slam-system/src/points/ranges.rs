@@ -44,6 +44,7 @@ impl PointSlamParams {
     /// # Errors
     /// [`SlamError::Parameter`] for the first that is not.
     pub fn validated(self) -> Result<Self, SlamError> {
+        self.external.check()?;
         let Self { robot, mounting, vehicle, sensor, velocity_noise, increment_noise, filter, .. } = &self;
         let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;

@@ -182,6 +182,7 @@ impl WallSlamParams {
     /// The first that is not, by name.
     pub fn validated(self) -> anyhow::Result<Self> {
         self.line_extraction.check()?;
+        self.external.check()?;
         self.scan_match.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;

@@ -85,6 +85,7 @@ impl CmlSystem {
     /// # Errors
     /// Returns an error if a parameter is out of range.
     pub fn new(params: &CmlParams, reader: ViewDescriptorReader, map: PanoramaMap) -> anyhow::Result<Self> {
+        params.external.check()?;
         Ok(Self {
             reader,
             localizer: PanoramaLocalizer::with_map(params.localizer, map, StartPosePrior::Anywhere)?,

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
 use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
-use wayfix_system_core::{EventCounts, Stopwatch, System, max_echo_range};
+use wayfix_system_core::{EventCounts, MOST_ESTIMATES, Stopwatch, System, max_echo_range};
 
 use super::totals::LineTotals;
 
@@ -24,8 +24,6 @@ pub struct LineExtractionSystem {
 
 /// Scans that are kept for pictures.
 const MOST_SCANS: usize = 256;
-/// Positions of the laser that are kept for the path, as many as a picture has pixels for: a path through the kept scans would cut corners.
-const MOST_PATH_POINTS: usize = 16_384;
 
 /// A scan and the walls in it.
 #[derive(Clone, Debug)]
@@ -54,7 +52,7 @@ impl LineExtractionSystem {
             pose: None,
             mount: Pose2::identity(),
             sample: Decimated::new(MOST_SCANS),
-            path: Decimated::new(MOST_PATH_POINTS),
+            path: Decimated::new(MOST_ESTIMATES),
             latest: None,
             totals: LineTotals::default(),
             true_walls: Vec::new(),
@@ -68,7 +66,7 @@ impl LineExtractionSystem {
         self.sample.kept()
     }
 
-    /// Positions of the laser at the processed scans with a pose, m; of a long log evenly spaced ones.
+    /// Positions of the laser at the processed scans with a pose, m; of a long log evenly spaced ones. A path through the kept scans would cut corners.
     pub fn path(&self) -> &[(f64, f64)] {
         self.path.kept()
     }

@@ -53,6 +53,30 @@ impl ExternalParams {
         !self.frames.is_empty() || self.datum.is_some()
     }
 
+    /// Checks that sigmas are positive and that the datum is a place on earth.
+    ///
+    /// # Errors
+    /// Returns [`SlamError::Parameter`] with the name of the first that is not.
+    pub fn check(&self) -> Result<(), SlamError> {
+        let sigmas = [
+            ("external.position_sigma", self.position_sigma),
+            ("external.heading_sigma", self.heading_sigma),
+        ];
+        for (name, sigma) in sigmas {
+            if let Some(value) = sigma.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
+                return Err(SlamError::Parameter { name, value, range: "positive" });
+            }
+        }
+        match self.datum {
+            Some([latitude, longitude]) if LocalPlane::new(latitude, longitude).is_none() => {
+                let range = "a latitude within ±90° and a longitude within ±360°";
+                let value = if latitude.abs() <= 90.0 { longitude } else { latitude };
+                Err(SlamError::Parameter { name: "external.datum", value, range })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Admits a measurement in this frame.
     ///
     /// # Errors
@@ -74,7 +98,7 @@ impl ExternalParams {
     /// The covariance of `(x, y, θ)` that the sensor states, else that of the parameters.
     ///
     /// # Errors
-    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured, or the parameters have a sigma that is not positive, [`ExternalError::Covariance`] if the stated one is not
+    /// Returns [`ExternalError::NoCovariance`] if there is none for what is measured, [`ExternalError::Covariance`] if the stated one is not
     /// positive definite in what is measured.
     pub fn covariance(
         &self,
@@ -82,9 +106,7 @@ impl ExternalParams {
         has_position: bool,
         has_heading: bool,
     ) -> Result<Matrix3<f64>, ExternalError> {
-        let sigma = |is_measured: bool, sigma: Option<f64>| {
-            if is_measured { sigma.filter(|sigma| *sigma > 0.0) } else { Some(0.0) }
-        };
+        let sigma = |is_measured: bool, sigma: Option<f64>| if is_measured { sigma } else { Some(0.0) };
         let sigmas = sigma(has_position, self.position_sigma).zip(sigma(has_heading, self.heading_sigma));
         let assumed = sigmas.map(|(position, heading)| {
             Matrix3::from_diagonal(&Vector3::new(position, position, heading).map(|sigma| sigma * sigma))
