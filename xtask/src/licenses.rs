@@ -1,4 +1,5 @@
-//! `cargo xtask licenses`: whether `deny.toml` allows the licence of every dependency; the part of `cargo deny` that needs no other program.
+//! `cargo xtask licenses`: whether `deny.toml` allows the licence and the source of every dependency, and no version is `*`: the part of `cargo deny`
+//! that needs no other program.
 
 use std::process::ExitCode;
 
@@ -13,7 +14,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     let metadata = ["metadata", "--format-version", "1", "--all-features", "--locked"];
     let metadata: Value = serde_json::from_str(&shell::output(&mut shell::command("cargo", &metadata))?)?;
     let packages = metadata["packages"].as_array().context("cargo metadata lists no packages")?;
-    let refused: Vec<String> = packages.iter().filter_map(|package| refused(package, &allowed)).collect();
+    let licenses = packages.iter().filter_map(|package| refused(package, &allowed));
+    let refused: Vec<String> = licenses.chain(packages.iter().flat_map(unknown_source)).collect();
     if !refused.is_empty() {
         bail!("deny.toml does not allow\n{}", refused.join("\n"));
     }
@@ -34,6 +36,22 @@ fn refused(package: &Value, allowed: &[String]) -> Option<String> {
     let license = package["license"].as_str().unwrap_or_default();
     let is_fine = is_allowed(license, &|name| allowed.iter().any(|known| known == name));
     (!is_fine).then(|| format!("    {}: {license:?}", package["name"].as_str().unwrap_or_default()))
+}
+
+/// The package if it comes from a repository, and the dependencies of one of ours that have any version.
+fn unknown_source(package: &Value) -> Vec<String> {
+    let name = package["name"].as_str().unwrap_or_default();
+    match package["source"].as_str() {
+        Some(source) if source.starts_with("git+") => vec![format!("    {name}: from a repository")],
+        Some(_) => Vec::new(),
+        None => {
+            let dependencies = package["dependencies"].as_array().into_iter().flatten();
+            // A path in the workspace needs no version.
+            let is_any = |dependency: &&Value| dependency["req"] == "*" && dependency["path"].is_null();
+            let named = |dependency: &Value| format!("    {name}: any version of {}", dependency["name"]);
+            dependencies.filter(is_any).map(named).collect()
+        }
+    }
 }
 
 /// Whether an SPDX expression can be met: `OR` (formerly `/`) binds weaker than `AND`.
@@ -85,5 +103,17 @@ mod tests {
         let package = |license: &str| serde_json::json!({"name": "a", "license": license});
         assert_eq!(refused(&package("MIT"), &allowed), None);
         assert_eq!(refused(&serde_json::json!({"name": "a"}), &allowed).as_deref(), Some("    a: \"\""));
+    }
+
+    #[test]
+    fn a_repository_and_any_version_are_refused() {
+        let package =
+            serde_json::json!({"name": "a", "source": "git+https://example.org/a", "dependencies": []});
+        assert_eq!(unknown_source(&package), ["    a: from a repository"]);
+        let dependency =
+            |req: &str, path: Option<&str>| serde_json::json!({"name": "b", "req": req, "path": path});
+        let dependencies = [dependency("*", None), dependency("*", Some("b")), dependency("^1", None)];
+        let ours = serde_json::json!({"name": "a", "source": null, "dependencies": dependencies});
+        assert_eq!(unknown_source(&ours), ["    a: any version of \"b\""]);
     }
 }

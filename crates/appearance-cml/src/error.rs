@@ -3,6 +3,17 @@ use wayfix_integrity::IntegrityError;
 use wayfix_kalman::KalmanError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
+///
+/// ```
+/// use wayfix_appearance_cml::{AppearanceMapError, LinearSearch, PanoramaDescriptor, ReferenceId, ReferenceSearch};
+/// let view = |re: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, 0]);
+/// let mut search = LinearSearch::default();
+/// search.insert(ReferenceId(7), view(20)?)?;
+/// let refused = search.insert(ReferenceId(7), view(50)?);
+/// assert_eq!(refused, Err(AppearanceMapError::DuplicateReference { id: 7 }));
+/// assert_eq!(search.get(ReferenceId(7)), Some(&view(20)?)); // unchanged
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AppearanceMapError {

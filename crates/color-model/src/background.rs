@@ -1,13 +1,20 @@
 /// Colour distribution of pixels that show no map surface.
 ///
 /// Densities of two poses are comparable only if both explain every pixel of the image; a pixel without a label counts as background. Uniform over
-/// the $`256^3`$ colours unless learned. For a custom one, use [`BackgroundColorModel::Histogram`] with pixels known to be outside the map.
+/// the $`256^3`$ colours unless learned. For a custom one, use [`from_pixels`](Self::from_pixels) with pixels known to be outside the map.
+/// ```
+/// use wayfix_color_model::BackgroundColorModel;
+/// let wall = BackgroundColorModel::from_pixels([[200, 120, 130]; 4096]);
+/// // 4096 pixels and 1 more in the cell that was seen, of 8192 in all; a cell has 16³ colours.
+/// assert!((wall.log_density([207, 127, 143]) - (4097.0_f64 / 8192.0 / 4096.0).ln()).abs() < 1e-9);
+/// assert!((BackgroundColorModel::default().log_density([0, 0, 0]) + 24.0 * 2.0_f64.ln()).abs() < 1e-9); // 256³ = 2²⁴
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum BackgroundColorModel {
     /// All YUV values are equally likely.
     #[default]
     Uniform,
-    /// Histogram of 4096 cells of 16 × 16 × 16, each with one pixel added so that no cell is zero.
+    /// Log densities of 4096 cells of 16 × 16 × 16 colours, by a histogram with one pixel added to each cell so that none is empty.
     Histogram(Vec<f64>),
 }
 

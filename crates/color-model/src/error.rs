@@ -4,6 +4,12 @@ use wayfix_kalman::KalmanError;
 use wayfix_particle::ParticleError;
 
 /// Errors of a colour model. After an error, the model is unchanged.
+/// ```
+/// use wayfix_color_model::{ColorModelError, YuvImage};
+/// let error = YuvImage::new(2, 2, vec![[0, 128, 128]; 3]).unwrap_err();
+/// assert_eq!(error, ColorModelError::ImageSize { width: 2, height: 2, expected: 12, got: 9 });
+/// assert_eq!(error.to_string(), "an image of 2 x 2 pixels needs 12 bytes, got 9");
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorModelError {

@@ -1,6 +1,6 @@
 //! The vocabulary of recursive estimation.
 //!
-//! Traits for the things every estimator speaks of, one axis of variation each, and no algorithm:
+//! Traits for what every estimator has, one axis of variation each, and no algorithm:
 //!
 //! | trait | says | implement it to |
 //! | --- | --- | --- |

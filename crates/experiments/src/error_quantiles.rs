@@ -1,4 +1,4 @@
-use wayfix_evaluation::plot::{LinePlot, PlotSeries};
+use wayfix_evaluation::plot::{LinePlot, PlotSeries, statistics};
 
 /// Median, 90 % and 95 % quantile of position errors, m, over the runs; `at` gives the abscissa of a point and the errors there.
 pub(crate) fn error_quantiles(
@@ -9,10 +9,8 @@ pub(crate) fn error_quantiles(
 ) -> LinePlot {
     let quantile = |share: f64| {
         let point = |i: usize| {
-            let (x, mut errors) = at(i);
-            errors.sort_by(f64::total_cmp);
-            let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
-            (x, errors.get(index).copied().unwrap_or(f64::NAN))
+            let (x, errors) = at(i);
+            (x, statistics::quantile(errors, share).unwrap_or(f64::NAN))
         };
         (0..n_points).map(point).collect()
     };

@@ -1,4 +1,14 @@
 /// Why a call was refused. The state is unchanged.
+///
+/// ```
+/// use wayfix_integrity::CusumTest;
+/// let mut test = CusumTest::from_false_alarm_rate(1e-3)?;
+/// test.observe(2.0)?;
+/// let refused = test.observe(f64::NAN).expect_err("not a number");
+/// assert_eq!(refused.to_string(), "log-likelihood ratio is NaN, must be a number");
+/// assert_eq!(test.sum(), 2.0); // unchanged
+/// # Ok::<(), wayfix_integrity::IntegrityError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IntegrityError {

@@ -16,9 +16,9 @@ use crate::error::{IntegrityError, check};
     serde(default, deny_unknown_fields)
 )]
 pub struct RelocalizationParams {
-    /// Largest mean number of false alarms per km of driving; 0 switches relocalization off. Default 0.01: a robot that drives 10 km a day has one in ten days.
+    /// Largest mean number of false alarms per km of driving; 0 switches relocalization off, but for an unknown start. Default 0.01: a robot that drives 10 km a day has one in ten days.
     pub false_alarms_per_km: f64,
-    /// Prior mean number of kidnappings of the robot, per km of driving; above `false_alarms_per_km`. Default 1.
+    /// Prior mean number of kidnappings of the robot, per km of driving; above `false_alarms_per_km`. A search of a standing robot counts as 1 m. Default 1.
     pub kidnappings_per_km: f64,
     /// Distance for which a replaced hypothesis remains an alternative, m. Default 20.
     pub alternative_kept_distance: f64,
@@ -56,7 +56,7 @@ impl RelocalizationParams {
         )
     }
 
-    /// No relocalization: the present hypothesis is never replaced.
+    /// No relocalization: no search replaces the present hypothesis. An unknown start is still decided.
     pub fn off() -> Self {
         Self { false_alarms_per_km: 0.0, ..Self::default() }
     }

@@ -1,6 +1,15 @@
 use crate::error::{IntegrityError, check, check_ratio};
 
 /// Which of two hypotheses the measurements so far support.
+///
+/// ```
+/// use wayfix_integrity::{ProbabilityRatioTest, RatioVerdict};
+/// let mut test = ProbabilityRatioTest::from_error_rate(1e-3)?; // ln 1000 is 6.9 nats
+/// assert_eq!(test.observe(8.0)?, RatioVerdict::Second);
+/// assert_eq!(test.observe(-4.0)?, RatioVerdict::Undecided); // revoked: 4 nats are left
+/// assert_eq!(test.observe(-11.0)?, RatioVerdict::First);
+/// # Ok::<(), wayfix_integrity::IntegrityError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RatioVerdict {
     /// Neither at the error rate.

@@ -5,6 +5,16 @@ use crate::{
 };
 
 /// A place that a global search proposes.
+///
+/// ```
+/// use wayfix_integrity::{RelocalizationCandidate, RelocalizationParams, RelocalizationTest};
+/// let mut test = RelocalizationTest::new(RelocalizationParams::default())?;
+/// let hall = RelocalizationCandidate { hypothesis: "hall", prior: 0.01, log_likelihood_ratio: 50.0 };
+/// test.propose([hall])?;
+/// assert!((test.probability() - 0.5).abs() < 1e-12); // even odds at most, whatever the ratio
+/// assert!(test.propose([RelocalizationCandidate { prior: 0.0, ..hall }]).is_err());
+/// # Ok::<(), wayfix_integrity::IntegrityError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelocalizationCandidate<H> {
     /// The hypothesis: a pose, a mixture component, a particle set.
@@ -16,6 +26,17 @@ pub struct RelocalizationCandidate<H> {
 }
 
 /// An alternative to the present hypothesis.
+///
+/// ```
+/// use wayfix_integrity::{RelocalizationCandidate, RelocalizationParams, RelocalizationTest};
+/// let mut test = RelocalizationTest::new(RelocalizationParams::default())?;
+/// test.drive(10.0)?; // m since the last search
+/// test.propose([RelocalizationCandidate { hypothesis: "hall", prior: 0.01, log_likelihood_ratio: 3.0 }])?;
+/// let alternative = test.alternatives()[0];
+/// assert!((alternative.statistic() - 0.01 * 10.0 * 3_f64.exp()).abs() < 1e-12); // prior, distance, likelihood ratio
+/// assert!(!alternative.is_previous());
+/// # Ok::<(), wayfix_integrity::IntegrityError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlternativeHypothesis<H> {
     /// The hypothesis.
@@ -40,13 +61,14 @@ enum Kind {
 /// An alternative $`j`$ with prior $`π_j`$ starts at $`R_j = π_j\, d\, Λ_j`$, where $`d`$ is the distance since the last search (at least 1 m) and
 /// $`Λ_j`$ the likelihood ratio of its measurements. These have selected the alternative, so they can make the odds of all
 /// proposals together, $`p \sum_j R_j`$, even and no more. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
-/// largest statistic reaches $`A`$: the mean distance to a false alarm is at least $`A`$, since $`\sum_j π_j ≤ 1`$.
+/// largest statistic reaches $`A`$: the mean distance to a false alarm is at least $`A`$ if $`\sum_j π_j ≤ 1`$ and the ratios are those of independent measurements. (Ratios
+/// that a search has maximized over more than the place are larger.)
 ///
 /// At an unknown start all places are equally probable ([`start`](Self::start)): an alternative with the likelihood ratio $`Λ_j`$ has the odds
 /// $`p R_j = Λ_j`$ and replaces the present hypothesis when they reach 1.
 ///
-/// The replaced hypothesis remains an alternative for a distance, with the odds that it has: $`p R = (p R_j)^{-1}`$.
-/// An alternative is removed when its odds have fallen by the factor $`p A`$, the odds of a decision.
+/// Otherwise the replaced hypothesis remains an alternative for a distance, with the odds that it has: $`p R = (p R_j)^{-1}`$.
+/// An alternative of a search is removed when its odds have fallen by the factor $`p A`$, the odds of a decision.
 ///
 /// ```
 /// use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest, RelocalizationParams};
@@ -222,9 +244,10 @@ impl<H> RelocalizationTest<H> {
         });
     }
 
-    /// The factor at which an even alternative would be decided, inverted.
+    /// The factor at which an even alternative would be decided, inverted; that of the default parameters if relocalization is off.
     fn removal_factor(&self) -> f64 {
-        1.0 / (self.params.prior() * self.params.threshold())
+        let params = if self.params.is_off() { RelocalizationParams::default() } else { self.params };
+        1.0 / (params.prior() * params.threshold())
     }
 }
 
@@ -233,7 +256,7 @@ impl<H> AlternativeHypothesis<H> {
     pub fn statistic(&self) -> f64 {
         self.statistic
     }
-    /// Whether it was the present hypothesis before.
+    /// Whether it was the present hypothesis before, and not one of an unknown start.
     pub fn is_previous(&self) -> bool {
         matches!(self.kind, Kind::Previous { .. })
     }

@@ -25,7 +25,7 @@
 //! ```
 //!
 //! Units are metres and radians, x forward, y left, in the frame of the laser. The crate has no filter and no map. Its accuracy in a map of walls is
-//! in `docs/adr/0014-scans-laid-on-one-another.md`. [Censi 2008; Chen & Medioni 1992]
+//! in `docs/adr/0014-scan-matching-between-keyframes.md`. [Censi 2008; Chen & Medioni 1992]
 
 mod cloud;
 mod error;

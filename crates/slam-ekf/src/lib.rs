@@ -49,9 +49,9 @@ pub use filter::{
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
     AckermannVehicle, CorrelatedNoise, ExternalError, ExternalParams, HeadingDriftSensor, HeadingSensor,
-    LineDistanceSensor, LocalPlane, MapMeasurement, MonobotMotion, MotionStatistics, MotionWithHeadingDrift,
-    MotionWithRangeScale, MountedSensor, MovedSensor, OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot,
-    PoseSensor, PoseWithHeadingDrift, PoseWithRangeScale, PositionSensor, RangeBearing, RangeBearingSensor,
+    LineDistanceSensor, LocalPlane, MapMeasurement, MonobotMotion, MotionStatistics, MotionWithRangeScale,
+    MountedSensor, MovedSensor, OdometryMotion, PLANAR_SYMMETRIES, PlanarRobot, PoseSensor,
+    PoseWithHeadingDrift, PoseWithRangeScale, PositionSensor, RangeBearing, RangeBearingSensor,
     RangeBearingSensorWithScale, RelativePosition, RelativePositionSensor, SensorWithHeadingDrift,
     SequentialMotion, UnknownMotion, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };

@@ -1,5 +1,6 @@
 //! Parameters as TOML text with a comment for every key.
 
+use schemars::transform::{RecursiveTransform, Transform as _};
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -7,7 +8,17 @@ use toml_edit::{DocumentMut, Item, Table};
 
 /// The JSON schema of parameters: editors complete and check TOML files by it.
 pub(crate) fn schema_of<P: JsonSchema>() -> Schema {
-    schema_for!(P)
+    let mut schema = schema_for!(P);
+    RecursiveTransform(without_examples).transform(&mut schema);
+    schema
+}
+
+/// Leaves the Rust examples out of a description.
+fn without_examples(schema: &mut Schema) {
+    if let Some(Value::String(description)) = schema.get_mut("description") {
+        let prose: String = description.split("```").step_by(2).collect();
+        prose.trim().clone_into(description);
+    }
 }
 
 /// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments

@@ -61,7 +61,7 @@ fn with_tables(page: &str, report: &Value) -> Result<String> {
     Ok(written)
 }
 
-/// A row for each figure with a bound, or with a value of a paper or another program.
+/// A row for each figure with a bound, an open goal, or a value of a paper or another program.
 fn of_suite(suite: &Value) -> String {
     let mut table = String::from(
         "| run | figure | measured | bound | compared with |\n| --- | --- | ---: | --- | --- |\n",
@@ -85,7 +85,7 @@ fn of_suite(suite: &Value) -> String {
 fn is_compared(metric: &Value) -> bool {
     let counts_changes = metric["name"] == "n_figures_changed"; // of this report against an earlier one
     let has_bound = ["low", "high", "paper"].iter().any(|key| metric[*key].is_number());
-    !counts_changes && (has_bound || metric["peer"].is_object())
+    !counts_changes && (has_bound || metric["open"] == true || metric["peer"].is_object())
 }
 
 fn text(value: &Value) -> String {
@@ -109,6 +109,11 @@ pub(crate) fn measured(metric: &Value) -> String {
 }
 
 fn bound(metric: &Value) -> String {
+    if metric["open"] == true {
+        // "open, wanted at most 3: …"
+        let source = text(&metric["bound_source"]);
+        return source.split_once(':').map_or(source.clone(), |(wanted, _)| wanted.to_owned());
+    }
     match (number(&metric["low"]), number(&metric["high"])) {
         (Some(low), Some(high)) if low == high => low,
         (Some(low), Some(high)) => format!("{low} to {high}"),
@@ -137,6 +142,8 @@ mod tests {
             {"name": "ate_rmse_m", "value": 0.050_61, "unit": "m", "low": 0.0496, "high": 0.0516, "paper": null, "pass": true,
              "peer": {"name": "numpy EKF", "value": 0.0506}},
             {"name": "n_landmarks", "value": 50.0, "unit": "", "low": 51.0, "high": 51.0, "paper": null, "pass": false},
+            {"name": "goal", "value": 0.2, "unit": "m", "low": null, "high": null, "paper": null, "pass": true, "open": true,
+             "bound_source": "open, wanted at most 0.1: design goal"},
             {"name": "no_bound", "value": 1.0, "unit": "", "low": null, "high": null, "paper": null, "pass": true},
         ]}]}]});
         let page = "a\n<!-- figures: slam -->\nold\n<!-- end figures -->\nb\n<!-- figures: color -->\nkept\n<!-- end figures -->\n";
@@ -146,6 +153,7 @@ mod tests {
             "{written}"
         );
         assert!(written.contains("| loop | `n_landmarks` | 50 (missed) | 51 |  |\n"), "{written}");
+        assert!(written.contains("| loop | `goal` | 0.2 m | open, wanted at most 0.1 |  |\n"), "{written}");
         assert!(
             written.contains("kept") && !written.contains("old") && !written.contains("no_bound"),
             "{written}"

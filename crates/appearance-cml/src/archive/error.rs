@@ -1,6 +1,14 @@
 use crate::AppearanceMapError;
 
 /// Why bytes are not a map that can be used here.
+///
+/// ```
+/// use wayfix_appearance_cml::{MapArchive, MapArchiveError};
+/// assert_eq!(MapArchive::from_bytes(b"a picture").err(), Some(MapArchiveError::NotAMap));
+/// // The version follows the magic: a map of a later program is not called damaged.
+/// let later = MapArchive::from_bytes(b"WAYFIXAM\xff\xff\xff\xff");
+/// assert!(matches!(later, Err(MapArchiveError::Version { found: u32::MAX, .. })));
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapArchiveError {

@@ -43,6 +43,19 @@ pub struct MapArchive {
 pub type MapAndState<S> = (AppearanceMap<PanoramaDescriptor, S>, Option<GaussianMixture<Pose2<f64>>>);
 
 /// How the bytes of a map end.
+///
+/// ```
+/// # use wayfix_appearance_cml::{AppearanceMap, ArchivedDescriptorFormat, MapArchive, MapArchiveCompleteness};
+/// # use wayfix_appearance_cml::{PanoramaDescriptor, PanoramaDescriptorParams};
+/// # let params = ArchivedDescriptorFormat { views: PanoramaDescriptorParams::default(), size: (120, 25) };
+/// # let map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
+/// let bytes = MapArchive::to_bytes(&params, &map, None);
+/// let cut = MapArchive::from_bytes(&bytes[..bytes.len() - 1])?; // a power failure
+/// // The last entry, the state of an unknown pose, has 13 bytes; what precedes it is whole.
+/// assert_eq!(cut.end(), MapArchiveCompleteness::Interrupted { whole_bytes: bytes.len() - 13 });
+/// assert_eq!(MapArchive::from_bytes(&bytes[..bytes.len() - 13])?.end(), MapArchiveCompleteness::Whole);
+/// # Ok::<(), wayfix_appearance_cml::MapArchiveError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapArchiveCompleteness {
     /// After a whole entry.

@@ -5,6 +5,21 @@ use super::{
 use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaDescriptorParams};
 
 /// Parameters that a map archive and its reader must share: the descriptor and the size of the pictures.
+///
+/// ```
+/// # use wayfix_appearance_cml::{AppearanceMap, ArchivedDescriptorFormat, LinearSearch, MapArchive};
+/// # use wayfix_appearance_cml::{PanoramaDescriptor, PanoramaDescriptorParams};
+/// # let map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
+/// let written = ArchivedDescriptorFormat { views: PanoramaDescriptorParams::default(), size: (120, 25) };
+/// let archive = MapArchive::from_bytes(&MapArchive::to_bytes(&written, &map, None))?;
+/// // Views of larger panoramas cannot be compared with those of the map.
+/// let larger = ArchivedDescriptorFormat { size: (240, 25), ..written };
+/// assert!(archive.clone().into_map::<LinearSearch<_>>(&larger).is_err());
+/// // The limits for refused views may differ.
+/// let stricter = ArchivedDescriptorFormat { views: PanoramaDescriptorParams { min_contrast: 0.05, ..written.views }, ..written };
+/// assert!(archive.into_map::<LinearSearch<_>>(&stricter).is_ok());
+/// # Ok::<(), wayfix_appearance_cml::MapArchiveError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArchivedDescriptorFormat {
     /// How panoramas are described.

@@ -45,6 +45,7 @@ pub fn fuse(
     for hypothesis in predicted.iter().chain(&observed.peaks) {
         // A hypothesis without a counterpart would pass unchecked otherwise.
         Gaussian::new(*hypothesis.gaussian.mean(), *hypothesis.gaussian.covariance())?;
+        crate::check::share("independent share of a hypothesis", hypothesis.independent)?;
     }
     let pairs = pairs(predicted, &observed.peaks, params.gate)?;
     let mut fused = Vec::with_capacity(predicted.len() + observed.peaks.len() + pairs.len());

@@ -45,9 +45,18 @@ impl GaussianMixtureLikelihood {
 /// The uniform component of a belief: the robot may be anywhere in the map.
 ///
 /// ```
-/// use wayfix_appearance_cml::UniformComponent;
-/// let unknown = UniformComponent { weight: 1.0, volume: 100.0 };
-/// assert_eq!(unknown.weight, 1.0);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{GaussianMixtureLikelihood, PoseHypothesis, UniformComponent};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let pose = Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// let height = |volume: f64| {
+///     let (hypotheses, uniform) = (vec![PoseHypothesis::new(0.9, pose.clone())], UniformComponent { weight: 1.0, volume });
+///     GaussianMixtureLikelihood::of_probabilities(hypotheses, &uniform).peaks[0].weight
+/// };
+/// // The same pose is twice as informative in a map of twice the extent.
+/// assert!((height(200.0) / height(100.0) - 2.0).abs() < 1e-12);
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformComponent {

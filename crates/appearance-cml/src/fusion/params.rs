@@ -3,7 +3,9 @@ use crate::{AppearanceMapError, check};
 /// How two Gaussians of the same place are combined.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::GaussianFusionRule::default(), wayfix_appearance_cml::GaussianFusionRule::SplitIntersection);
+/// use wayfix_appearance_cml::{GaussianFusionRule, MixtureFusionParams};
+/// assert_eq!(MixtureFusionParams::default().fusion_rule, GaussianFusionRule::SplitIntersection);
+/// assert_eq!(MixtureFusionParams::as_published().fusion_rule, GaussianFusionRule::WeightedIntersection);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -20,7 +22,9 @@ pub enum GaussianFusionRule {
 /// How the weights of two mixtures are combined.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::MixtureWeighting::default(), wayfix_appearance_cml::MixtureWeighting::Evidence);
+/// use wayfix_appearance_cml::{MixtureFusionParams, MixtureWeighting};
+/// assert_eq!(MixtureFusionParams::default().mixture_weighting, MixtureWeighting::Evidence);
+/// assert_eq!(MixtureFusionParams::as_published().mixture_weighting, MixtureWeighting::Support);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

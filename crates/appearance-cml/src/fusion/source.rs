@@ -9,6 +9,27 @@ use crate::{AppearanceMapError, PoseHypothesis};
 /// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map. [Gross et al. 2005, Fig. 2]
 ///
 /// **Law**: weights are probabilities in [0, 1]; 1 means that no other pose is possible.
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMapError, LinearSearch, LocalizerParams, PanoramaDescriptor};
+/// # use wayfix_appearance_cml::{PoseHypothesis, PoseHypothesisSource, StartPosePrior};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::{Gaussian, GaussianMixture};
+/// /// A contact of the charging dock: the robot is there with probability 0.99.
+/// struct Docked(Gaussian<Pose2<f64>>);
+/// impl PoseHypothesisSource for Docked {
+///     fn hypotheses(&self, _: Option<&GaussianMixture<Pose2<f64>>>) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
+///         Ok(vec![PoseHypothesis { weight: 0.99, gaussian: self.0.clone(), independent: 1.0 }])
+///     }
+/// }
+/// # let dock = Docked(Gaussian::from_sigmas(Pose2::new(3.0, 1.0, 0.0), &Vector3::new(0.02, 0.02, 0.01))?);
+/// # let mut robot = AppearanceLocalizer::<PanoramaDescriptor, LinearSearch<_>>::new(LocalizerParams::default(), StartPosePrior::Anywhere)?;
+/// # let view = PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, 0])?;
+/// let outcome = robot.update_with(view, &[&dock])?; // anywhere before, in an empty map
+/// assert_eq!(outcome.estimate.map(|pose| pose.mean().x()), Some(3.0));
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 pub trait PoseHypothesisSource {
     /// The hypotheses of the source at this time; the list may be empty.
     ///

@@ -172,10 +172,13 @@ where
     /// Predicts the belief by a motion that nothing measured, with this covariance in the body frame, m² and rad².
     ///
     /// # Errors
-    /// Returns an error if the covariance is not finite; the state is then unchanged.
+    /// Returns an error if the covariance is not finite or has a negative eigenvalue; the state is then unchanged.
     pub fn predict_unknown(&mut self, covariance: &Matrix3<f64>) -> Result<(), AppearanceMapError> {
         let unknown = Motion { increment: Pose2::identity(), covariance: *covariance, has_gap: true };
         let motion = self.motion.then(&unknown)?;
+        let (least, rounding) = (covariance.symmetric_eigenvalues().min(), f64::EPSILON * covariance.trace());
+        let what = "eigenvalue of the covariance of an unknown motion";
+        crate::check::within(what, least, least >= -rounding, "not negative")?;
         self.belief = self.belief.moved(&unknown)?;
         self.motion = motion;
         self.kidnap.predict(|belief| belief.moved(&unknown));
@@ -203,7 +206,7 @@ where
         let view = self.is_news().then_some(view);
         let matched = view.as_ref().map(|view| self.match_view(view)).transpose()?; // Eqs. 9-10
         let likelihood = matched.as_ref().map(|matched| &matched.likelihood);
-        let mut belief = self.belief.fused(likelihood, sources, self.map.area(), &self.params)?; // Eqs. 1-8
+        let mut belief = self.belief.fused(likelihood, sources, self.map.area(), &self.params)?; // Eqs. 2-8
         let mut kidnap = self.kidnap.clone();
         let is_moved = match &view {
             Some(view) => self.relocalize(view, &mut kidnap, &mut belief)?,

@@ -6,8 +6,15 @@ use crate::ReferenceId;
 /// An event of the localizer.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LocalizerEvent, ReferenceId};
-/// assert_ne!(LocalizerEvent::NewReference(ReferenceId(3)), LocalizerEvent::Forgotten(ReferenceId(3)));
+/// # use nalgebra::{Matrix2, Vector2};
+/// # use wayfix_appearance_cml::{AppearanceLocalizer, LinearSearch, LocalizerEvent};
+/// # use wayfix_appearance_cml::{LocalizerParams, PanoramaDescriptor, PositionFix, StartPosePrior};
+/// # let view = || PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, 0]);
+/// # let mut robot = AppearanceLocalizer::<PanoramaDescriptor, LinearSearch<_>>::new(LocalizerParams::default(), StartPosePrior::Anywhere)?;
+/// let fix = PositionFix { position: Vector2::new(3.0, 4.0), covariance: Matrix2::identity() * 1e-4, weight: 0.9 };
+/// assert_eq!(robot.update_with(view()?, &[&fix])?.events, [LocalizerEvent::Found]); // 0.9 of the belief is there, 0.8 suffice
+/// assert!(robot.update_with(view()?, &[&fix])?.events.is_empty()); // reported once
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -27,8 +34,18 @@ pub enum LocalizerEvent {
 /// The result of one view.
 ///
 /// ```
-/// let nothing = wayfix_appearance_cml::ViewUpdateOutcome { events: Vec::new(), estimate: None, n_detections: 0, best_match: None };
-/// assert!(nothing.estimate.is_none());
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceLocalizer, LinearSearch, LocalizerParams, PanoramaDescriptor, StartPosePrior};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let view = PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, 0])?;
+/// # let start = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.02, 0.02, 0.01))?;
+/// # let start = StartPosePrior::Known(start);
+/// let mut robot = AppearanceLocalizer::<PanoramaDescriptor, LinearSearch<_>>::new(LocalizerParams::default(), start)?;
+/// let outcome = robot.update(view)?; // the first one: nothing in the map can match
+/// assert_eq!((outcome.n_detections, outcome.best_match), (0, None));
+/// assert_eq!(outcome.estimate.map(|pose| pose.mean().x()), Some(1.0)); // from the start alone
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewUpdateOutcome {

@@ -8,7 +8,23 @@ use crate::{
 /// Whether the map changes while the robot drives.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::MapLearning::default(), wayfix_appearance_cml::MapLearning::Adapting);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMapError, LinearSearch};
+/// # use wayfix_appearance_cml::{LocalizerParams, MapLearning, PanoramaDescriptor, StartPosePrior};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let start = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(0.02, 0.02, 0.01))?;
+/// let learned = |map_learning| -> Result<usize, AppearanceMapError> {
+///     let params = LocalizerParams { map_learning, ..Default::default() };
+///     let mut robot = AppearanceLocalizer::<_, LinearSearch<_>>::new(params, StartPosePrior::Known(start.clone()))?;
+///     for step in 0..40 {
+///         robot.update(PanoramaDescriptor::from_parts(0.01, 1, vec![3, 3 * step, 0])?)?;
+///         robot.predict(&Pose2::new(0.25, 0.0, 0.0))?;
+///     }
+///     Ok(robot.map().len())
+/// };
+/// assert!(learned(MapLearning::Adapting)? > 10 && learned(MapLearning::Static)? == 0);
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -24,7 +40,9 @@ pub enum MapLearning {
 /// How matching places become hypotheses of the pose.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::PoseHypothesisRule::default(), wayfix_appearance_cml::PoseHypothesisRule::Interpolation);
+/// use wayfix_appearance_cml::{LocalizerParams, PoseHypothesisRule};
+/// assert_eq!(LocalizerParams::default().pose_hypothesis_rule, PoseHypothesisRule::Interpolation);
+/// assert_eq!(LocalizerParams::as_published().pose_hypothesis_rule, PoseHypothesisRule::Superposition);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -6,13 +6,17 @@ use crate::AppearanceMapError;
 /// The pose of the robot at the start.
 ///
 /// ```
-/// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::StartPosePrior;
-/// use wayfix_estimation_traits::Pose2;
-/// use wayfix_gaussian_core::Gaussian;
-/// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.02, 0.02, 0.01))?;
-/// assert_ne!(StartPosePrior::Known(pose), StartPosePrior::Anywhere);
-/// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceLocalizer, LinearSearch, LocalizerParams, PanoramaDescriptor, StartPosePrior};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::{Gaussian, GaussianMixture};
+/// # let at = |x: f64| Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.02, 0.02, 0.01));
+/// let robot = |start| AppearanceLocalizer::<PanoramaDescriptor, LinearSearch<_>>::new(LocalizerParams::default(), start);
+/// let docks = GaussianMixture::from_weights(vec![(0.3, at(1.0)?), (0.7, at(5.0)?)])?;
+/// let among = robot(StartPosePrior::Among(docks))?;
+/// assert_eq!(among.estimate().map(|pose| pose.mean().x()), Some(5.0)); // the heaviest
+/// assert!(robot(StartPosePrior::Anywhere)?.estimate().is_none());
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum StartPosePrior {

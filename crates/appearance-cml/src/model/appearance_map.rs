@@ -44,6 +44,9 @@ pub struct AppearanceMap<D, S = LinearSearch<D>> {
     descriptor: PhantomData<fn() -> D>,
 }
 
+/// m². Wider than any position of an external sensor is uncertain.
+const UNKNOWN_AREA: f64 = 1e6;
+
 impl<D: ViewDescriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D, S> {
     fn default() -> Self {
         Self {
@@ -130,9 +133,9 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.scale.to_meters(self.match_limit(params))
     }
 
-    /// The area with references, m²; at least 1.
+    /// The area with references, m²; at least 1. That of an empty map is not known: a square kilometre.
     pub fn area(&self) -> f64 {
-        self.grid.area()
+        if self.is_empty() { UNKNOWN_AREA } else { self.grid.area() }
     }
 
     /// Inserts the view as a reference of this place, for a map that is taught with known poses.

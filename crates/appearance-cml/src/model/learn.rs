@@ -19,7 +19,19 @@ use crate::{
 /// The changes of the map by one view.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::MapUpdate::default().inserted, None);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceMap, AppearanceMapParams, MapUpdate, PanoramaDescriptor, ReferenceId, ViewDifferenceSample};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let view = || PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, 0]);
+/// # let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// # let (mut map, params): (AppearanceMap<PanoramaDescriptor>, _) = (AppearanceMap::default(), AppearanceMapParams::default());
+/// # map.scale_mut().add_near(ViewDifferenceSample { lag: 0.25, distance: 0.1 });
+/// let first = map.learn(view()?, &pose, &params, 16.3)?;
+/// assert_eq!(first, MapUpdate { inserted: Some(ReferenceId(0)), forgotten: vec![], matched: 0 });
+/// let again = map.learn(view()?, &pose, &params, 16.3)?; // the reference matches: no second one
+/// assert_eq!(again, MapUpdate { inserted: None, forgotten: vec![], matched: 1 });
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct MapUpdate {

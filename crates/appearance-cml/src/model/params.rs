@@ -3,7 +3,24 @@ use crate::{AppearanceMapError, check};
 /// Whether and how the map forgets.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::ForgettingMode::default(), wayfix_appearance_cml::ForgettingMode::Active);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceMap, AppearanceMapError, AppearanceMapParams};
+/// # use wayfix_appearance_cml::{ForgettingMode, PanoramaDescriptor, ReferenceId, ViewDifferenceSample};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let view = |re: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, 0]);
+/// # let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// let weight_of_first = |forgetting_mode| -> Result<Option<f64>, AppearanceMapError> {
+///     let params = AppearanceMapParams { forgetting_mode, ..Default::default() };
+///     let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
+/// #     map.scale_mut().add_near(ViewDifferenceSample { lag: 0.25, distance: 0.1 });
+///     map.learn(view(20)?, &pose, &params, 16.3)?;
+///     map.learn(view(90)?, &pose, &params, 16.3)?; // the place looks different now
+///     Ok(map.reference(ReferenceId(0)).map(|reference| reference.importance()))
+/// };
+/// assert_eq!(weight_of_first(ForgettingMode::Passive)?, Some(0.3));
+/// assert!(weight_of_first(ForgettingMode::Active)?.is_some_and(|weight| (weight - 0.3 * (1.0 - 0.6)).abs() < 1e-12));
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -19,7 +36,9 @@ pub enum ForgettingMode {
 /// What a view changes in the references that match it.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::PlaceUpdateRule::default(), wayfix_appearance_cml::PlaceUpdateRule::Residual);
+/// use wayfix_appearance_cml::{AppearanceMapParams, PlaceUpdateRule};
+/// assert_eq!(AppearanceMapParams::default().place_update, PlaceUpdateRule::Residual);
+/// assert_eq!(AppearanceMapParams::as_published().place_update, PlaceUpdateRule::Pose);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -37,8 +56,24 @@ pub enum PlaceUpdateRule {
 /// The uncertainty that slows active forgetting down.
 ///
 /// ```
-/// use wayfix_appearance_cml::ForgettingUncertainty;
-/// assert_eq!(ForgettingUncertainty::default(), ForgettingUncertainty::AgainstPlace);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{AppearanceMap, AppearanceMapError, AppearanceMapParams};
+/// # use wayfix_appearance_cml::{ForgettingUncertainty, PanoramaDescriptor, ReferenceId, ViewDifferenceSample};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let view = |re: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, 0]);
+/// # let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// let weight_of_first = |forgetting_uncertainty| -> Result<Option<f64>, AppearanceMapError> {
+///     let params = AppearanceMapParams { forgetting_uncertainty, ..Default::default() };
+///     let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
+/// #     map.scale_mut().add_near(ViewDifferenceSample { lag: 0.25, distance: 0.1 });
+///     map.learn(view(20)?, &pose, &params, 16.3)?;
+///     map.learn(view(90)?, &pose, &params, 16.3)?; // the place looks different now
+///     Ok(map.reference(ReferenceId(0)).map(|reference| reference.importance()))
+/// };
+/// assert!(weight_of_first(ForgettingUncertainty::AgainstPlace)?.is_some_and(|weight| (weight - 0.3 * (1.0 - 0.6)).abs() < 1e-12));
+/// assert_eq!(weight_of_first(ForgettingUncertainty::Pose)?, None); // 0.6 · 0.5 m / 0.2 m is above 1: forgotten at once
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -28,7 +28,17 @@ pub struct PlaceComponent {
 /// The places of one reference view.
 ///
 /// ```
-/// assert_eq!(wayfix_appearance_cml::ReferenceView::default().importance(), 0.0);
+/// # use nalgebra::Vector3;
+/// # use wayfix_appearance_cml::{PlaceComponent, ReferenceView};
+/// # use wayfix_estimation_traits::Pose2;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let gaussian = Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
+/// let place = |weight: f64| PlaceComponent { weight, count: 1.0, gaussian: gaussian.clone() };
+/// // Two shelves that look alike: the weights of their places need not add up to one.
+/// let reference = ReferenceView { places: vec![place(0.75), place(0.5)] };
+/// assert!(reference.validate().is_ok() && reference.importance() == 1.25);
+/// assert!(ReferenceView { places: vec![place(1.5)] }.validate().is_err());
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ReferenceView {

@@ -34,9 +34,21 @@ pub struct AppearanceIndex<D: LowerBoundedDistance> {
 }
 
 /// Number of references that each stage of a search compared.
+///
+/// ```
+/// # use wayfix_appearance_cml::{AppearanceIndex, PanoramaDescriptor, ReferenceId, ReferenceSearch};
+/// # let view = |height: i8| PanoramaDescriptor::from_parts(0.01, 2, vec![height, -height, 20, 0, 0, 30]);
+/// # let mut index = AppearanceIndex::default();
+/// for height in 0..100 {
+///     index.insert(ReferenceId(height as u32), view(height)?)?;
+/// }
+/// let (_, cost) = index.nearest_counted(&view(42)?, 1, f64::INFINITY);
+/// assert!(cost.compared < 10 && cost.found == 1); // of 100 references
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchStatistics {
-    /// Bounded by their descriptors: what the table let through.
+    /// What the table let through, for a bound by their descriptors.
     pub bounded: usize,
     /// Compared: what the bound let through.
     pub compared: usize,

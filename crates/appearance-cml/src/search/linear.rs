@@ -4,6 +4,18 @@ use super::{ReferenceId, ReferenceMatch, ReferenceSearch, ViewDescriptor, neares
 use crate::AppearanceMapError;
 
 /// Compares with every reference: the plain search that faster ones must agree with.
+///
+/// ```
+/// use wayfix_appearance_cml::{LinearSearch, PanoramaDescriptor, ReferenceId, ReferenceSearch};
+/// let view = |re: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, 0]);
+/// let mut search = LinearSearch::default();
+/// for (id, re) in [(2, 20), (0, 50), (1, 20)] {
+///     search.insert(ReferenceId(id), view(re)?)?;
+/// }
+/// let found: Vec<ReferenceId> = search.nearest(&view(30)?, 3).iter().map(|found| found.id).collect();
+/// assert_eq!(found, [1, 2, 0].map(ReferenceId)); // equally near ones by number
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct LinearSearch<D> {
     references: BTreeMap<ReferenceId, D>,

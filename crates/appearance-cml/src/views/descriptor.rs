@@ -15,6 +15,15 @@ const MOST_HARMONICS: usize = MOST_GROUPS * HARMONICS;
 ///
 /// Over the rings they are cosines. The distance is $`d² = \min_φ \sum_{rk} |a_{rk} e^{\mathrm i kφ} - b_{rk}|²`$: the root mean square difference of the cells of two normalized views
 /// at the best rotation, as far as the harmonics go. It obeys the triangle inequality. Views of different shape are at infinite distance.
+///
+/// ```
+/// use wayfix_appearance_cml::{PanoramaDescriptor, ViewDescriptor};
+/// let view = |re: i8, im: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, im]);
+/// // At the best rotation 50 and 20 steps of the scale differ by 30.
+/// assert!((view(50, 0)?.compare(&view(0, 20)?).distance - 0.3).abs() < 1e-6);
+/// assert!(view(-128, 0).is_err());
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanoramaDescriptor {
     scale: f32,

@@ -4,6 +4,19 @@ use super::{AzimuthDirection, Panorama};
 use crate::AppearanceMapError;
 
 /// Which ring of a raw omnidirectional image shows what is highest.
+///
+/// ```
+/// # use wayfix_appearance_cml::{AppearanceMapError, AzimuthDirection, OmnidirectionalRing, RingVerticalOrientation};
+/// let radius = |i: i32| (f64::from(i % 10) - 4.5).hypot(f64::from(i / 10) - 4.5);
+/// let image: Vec<[u8; 3]> = (0..100).map(|i| if radius(i) > 2.5 { [255, 0, 0] } else { [0, 0, 255] }).collect();
+/// let top = |ring_orientation| -> Result<[u8; 3], AppearanceMapError> {
+///     let ring = OmnidirectionalRing { center: [4.5; 2], radii: [1.0, 4.0], azimuth_direction: AzimuthDirection::Clockwise, ring_orientation };
+///     Ok(ring.unwrap_image(10, 10, &image, 16, 2)?.pixels()[0])
+/// };
+/// assert_eq!(top(RingVerticalOrientation::OutermostUp)?, [255, 0, 0]); // the outer half of the ring
+/// assert_eq!(top(RingVerticalOrientation::InnermostUp)?, [0, 0, 255]);
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

@@ -1,6 +1,21 @@
 use crate::AppearanceMapError;
 
 /// Which way the azimuth grows from column to column.
+///
+/// ```
+/// # use wayfix_appearance_cml::{AppearanceMapError, AzimuthDirection, Panorama};
+/// # use wayfix_appearance_cml::{PanoramaDescriptorExtractor, PanoramaDescriptorParams, ViewDescriptor};
+/// # let panorama = Panorama::from_rgb(120, 25, (0..120 * 25).flat_map(|i| [(i % 120 * (i / 120 + 3) % 251) as u8; 3]).collect())?;
+/// let turn = |azimuth_direction| -> Result<f64, AppearanceMapError> {
+///     let params = PanoramaDescriptorParams { azimuth_direction, ..Default::default() };
+///     let extractor = PanoramaDescriptorExtractor::new(params, 120, 25)?;
+///     Ok(extractor.describe(&panorama.turned(10))?.compare(&extractor.describe(&panorama)?).rotation.to_degrees())
+/// };
+/// // Ten columns of 3°; angles are positive counterclockwise.
+/// assert!((turn(AzimuthDirection::Clockwise)? + 30.0).abs() < 0.2);
+/// assert!((turn(AzimuthDirection::Counterclockwise)? - 30.0).abs() < 0.2);
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

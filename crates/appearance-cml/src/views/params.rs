@@ -2,6 +2,16 @@ use super::{AzimuthDirection, BrightnessNormalization, IntensityScale};
 use crate::{AppearanceMapError, check};
 
 /// How a panorama is described.
+///
+/// ```
+/// use wayfix_appearance_cml::{Panorama, PanoramaDescriptorExtractor, PanoramaDescriptorParams};
+/// let params = PanoramaDescriptorParams::default();
+/// assert!(PanoramaDescriptorExtractor::new(params, 31, 25).is_err()); // 16 harmonics need 32 columns
+/// let extractor = PanoramaDescriptorExtractor::new(params, 32, 25)?;
+/// let panorama = Panorama::from_rgb(32, 25, (0..32 * 25).flat_map(|i| [(i * i % 251) as u8; 3]).collect())?;
+/// assert_eq!(extractor.describe(&panorama)?.coefficients().len(), 25 * (2 * 16 - 1)); // bytes
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -14,7 +24,7 @@ pub struct PanoramaDescriptorParams {
     pub n_rings: usize,
     /// Sectors that the columns are averaged into; where there are fewer columns, every column is a sector. Default 120, from 4 to 1024.
     pub n_sectors: usize,
-    /// Harmonics of the azimuth, the constant one included. Default 16: details down to 24°; at least 2, at most half the sectors, at most 64.
+    /// Harmonics of the azimuth, the constant one included. Default 16: details down to 24°; at least 2, at most half the sectors and half the columns, at most 64.
     pub n_harmonics: usize,
     /// Standard deviation, in sectors and in rings, of the Gaussian that views are smoothed with; 0 leaves them as they are. Finer detail shows the
     /// exact position more than the place: it differs too much a third of a metre beside the taught lane. Default 1.
@@ -23,7 +33,7 @@ pub struct PanoramaDescriptorParams {
     pub intensity_scale: IntensityScale,
     /// What brightness is made independent of. Default: mean and variance.
     pub brightness_normalization: BrightnessNormalization,
-    /// Least standard deviation of the cells of a view, as a share of the range of the tone. Default 0.01.
+    /// Least standard deviation of the cells of a view, as a share of the range of the intensity scale. Default 0.01.
     pub min_contrast: f64,
     /// Largest share of pixels that are all black or all white. Default 0.8.
     pub max_saturated_share: f64,
@@ -48,9 +58,11 @@ impl Default for PanoramaDescriptorParams {
 }
 
 impl PanoramaDescriptorParams {
+    /// Checks the ranges.
+    ///
     /// # Errors
     /// [`AppearanceMapError::Parameter`] for the first value outside its range.
-    pub(super) fn validate(&self) -> Result<(), AppearanceMapError> {
+    pub fn validate(&self) -> Result<(), AppearanceMapError> {
         let whole = |what, value: usize, holds, range| check::within(what, value as f64, holds, range);
         whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
         whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;

@@ -12,6 +12,17 @@ pub(super) const N_LOW_HARMONICS: usize = 8;
 /// A view that is about to be compared with many references.
 ///
 /// Its products with a reference are exact.
+///
+/// ```
+/// use wayfix_appearance_cml::{LowerBoundedDistance, PanoramaDescriptor, PanoramaQuery, ViewDescriptor};
+/// let view = |re: i8, im: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, im]);
+/// let seen = view(50, 10)?;
+/// let query: PanoramaQuery = seen.probe();
+/// for reference in [view(20, 0)?, view(0, -90)?] {
+///     assert_eq!(reference.compare_with(&query), seen.compare(&reference)); // to the bit
+/// }
+/// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PanoramaQuery {
     scale: f64,

@@ -4,7 +4,7 @@ use crate::common;
 
 use crate::common::{Field, FieldView, known, lap};
 use approx::assert_abs_diff_eq;
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
@@ -24,6 +24,18 @@ impl PoseHypothesisSource for Weightless {
         _: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
         Ok(vec![PoseHypothesis::new(f64::NAN, known(Pose2::new(0.0, 0.0, 0.0)))])
+    }
+}
+
+struct MoreThanIndependent;
+
+impl PoseHypothesisSource for MoreThanIndependent {
+    fn hypotheses(
+        &self,
+        _: Option<&GaussianMixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceMapError> {
+        let hypothesis = PoseHypothesis::new(0.5, known(Pose2::new(0.0, 0.0, 0.0)));
+        Ok(vec![PoseHypothesis { independent: 1.5, ..hypothesis }])
     }
 }
 
@@ -61,6 +73,9 @@ fn odometry_that_is_not_finite_changes_nothing() {
         }
     }
     assert!(localizer.predict(&Pose2::new(f64::MAX, f64::MAX, 0.0)).is_err(), "its covariance overflows");
+    for covariance in [Matrix3::repeat(f64::NAN), Matrix3::from_diagonal(&Vector3::new(1.0, -1e-3, 1.0))] {
+        assert!(localizer.predict_unknown(&covariance).is_err());
+    }
     assert_eq!(localizer.state().cloned(), before);
 }
 
@@ -73,7 +88,8 @@ fn sources_that_fail_change_nothing() {
     let flat = PositionFix { position: Vector2::zeros(), covariance: Matrix2::zeros(), weight: 0.5 };
     let nowhere =
         PositionFix { position: Vector2::repeat(f64::NAN), covariance: Matrix2::identity(), weight: 0.5 };
-    let sources: [&dyn PoseHypothesisSource; 4] = [&flat, &nowhere, &Weightless, &Singular];
+    let sources: [&dyn PoseHypothesisSource; 5] =
+        [&flat, &nowhere, &Weightless, &Singular, &MoreThanIndependent];
     for bad in sources {
         assert!(localizer.update_with(field.view(&here, &mut rng), &[bad]).is_err());
     }
@@ -95,6 +111,24 @@ fn a_fix_helps_where_nothing_is_known() {
     let outcome = localizer.update_with(field.view(&pose, &mut rng), &[&fix]).expect("a good fix");
     let estimate = outcome.estimate.expect("the fix says where");
     assert_abs_diff_eq!(estimate.mean().translation, Vector2::new(3.1, 4.1), epsilon = 1e-9);
+}
+
+#[test]
+fn a_robot_with_an_empty_map_starts_by_gps() {
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let field = Field::new(&mut rng);
+    let mut localizer =
+        Localizer::new(LocalizerParams::default(), StartPosePrior::Anywhere).expect("valid defaults");
+    for k in 0..20 {
+        let pose = Pose2::new(3.0 + 0.25 * f64::from(k), 4.0, 0.0);
+        let fix =
+            PositionFix { position: pose.translation, covariance: Matrix2::identity() * 4.0, weight: 0.9 };
+        localizer.update_with(field.view(&pose, &mut rng), &[&fix]).expect("a good fix");
+        let estimate = localizer.estimate().expect("the fix says where");
+        assert_abs_diff_eq!(estimate.mean().translation, pose.translation, epsilon = 0.5);
+        localizer.predict(&Pose2::new(0.25, 0.0, 0.0)).expect("finite");
+    }
+    assert!(localizer.map().len() > 5, "it learns");
 }
 
 #[test]

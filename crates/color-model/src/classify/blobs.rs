@@ -4,6 +4,13 @@ use super::NO_COLOR;
 use crate::ColorModelError;
 
 /// Connected pixels of one colour.
+/// ```
+/// use wayfix_color_model::find_blobs;
+/// let blob = find_blobs(&[0, 255, 0, 0], 2)?[0]; // three of the four pixels
+/// assert_eq!((blob.columns, blob.rows, blob.n_pixels), ((0, 1), (0, 1), 3));
+/// assert!((blob.centroid.0 - 2.5 / 3.0).abs() < 1e-12); // of 0.5, 0.5 and 1.5
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorBlob {
     /// Their colour.

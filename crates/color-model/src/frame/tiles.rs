@@ -10,6 +10,13 @@ use super::{
 use crate::{ColorModelError, YuvImage};
 
 /// An image as sums, divided into square tiles: sums of any run of pixels, and of any rows of a tile.
+/// ```
+/// use wayfix_color_model::{TiledImage, YuvImage};
+/// let image = YuvImage::new(63, 20, vec![[90, 110, 100]; 63 * 20])?;
+/// assert_eq!(TiledImage::new(&image, 16, |_| 0.0)?.n_tiles(), 4 * 2); // the last ones are not full
+/// assert_eq!(TiledImage::new(&image, 100, |_| 0.0)?.n_tiles(), 2); // a side is at most 62
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TiledImage {
     pixels: PrefixSumImage,
@@ -23,6 +30,16 @@ pub struct TiledImage {
 }
 
 /// The pixels of one colour in one tile.
+/// ```
+/// # use wayfix_color_model::{TileRegion, TileSums, TiledImage, YuvImage};
+/// let row = YuvImage::new(4, 1, [10, 20, 30, 40].map(|y| [y, 128, 128]).to_vec())?;
+/// let image = TiledImage::new(&row, 2, |_| 0.0)?;
+/// let mut tiles = TileSums::new(&image, 3);
+/// tiles.add_run(&image, (0, 1, 3), 2); // the two pixels in the middle show the third colour
+/// let brightness = |region: TileRegion<'_>| (region.tile, region.color, region.sums().sum().x);
+/// assert_eq!(tiles.regions().map(brightness).collect::<Vec<_>>(), [(0, 2, 20.0), (1, 2, 30.0)]);
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct TileRegion<'a> {
     /// Number of the tile, row by row.

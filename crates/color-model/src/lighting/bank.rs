@@ -38,6 +38,22 @@ pub struct LightingFilterBank {
 }
 
 /// The filter of a bank that a particle has as active, and its likelihood of the frame.
+/// ```
+/// # use nalgebra::{DMatrix, DVector};
+/// # use rand::SeedableRng;
+/// # use wayfix_color_model::{LightingFilter, LightingFilterBank, LightingFilterParams};
+/// # use wayfix_gaussian_core::Gaussian;
+/// # use wayfix_kalman::MarkovChain;
+/// # let prior = Gaussian::new(DVector::from_vec(vec![100.0, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// # let light = LightingFilter::new(prior, LightingFilterParams::default())?;
+/// # let rng = &mut rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let bank = LightingFilterBank::new(vec![light.clone(), light], MarkovChain::sticky(2, 0.98)?)?;
+/// // Before the first image, both members are equally probable.
+/// let selected = bank.choose(&[0.2_f64.ln(), 0.6_f64.ln()], rng)?;
+/// assert!((selected.log_likelihood - 0.4_f64.ln()).abs() < 1e-12);
+/// assert_eq!(bank.choose(&[0.0, f64::NEG_INFINITY], rng)?.member, 0); // the other one is impossible
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelectedLightingFilter {
     /// The member drawn.

@@ -1,6 +1,18 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Distribution of the pixels of one map colour in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eqs. 7–9]
+/// ```
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use wayfix_color_map::ColorId;
+/// # use wayfix_color_model::{LightingFilter, LightingFilterParams};
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let prior = Gaussian::new(DVector::from_vec(vec![100.0, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// let light = LightingFilter::new(prior, LightingFilterParams::default())?;
+/// let density = light.color(ColorId(0));
+/// // 400 of the mean and (144, 36, 36) of a pixel about it.
+/// assert_eq!(density.covariance.diagonal(), Vector3::new(544.0, 436.0, 436.0));
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorDensity {
     /// Mean (Y, U, V).

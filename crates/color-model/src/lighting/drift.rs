@@ -14,7 +14,7 @@ impl LightingDrift {
         }
     }
 
-    /// The covariance after `seconds`. Variances that grow by a random walk are limited to `widest` times (Y, U, V).
+    /// The covariance after `seconds`. Variances that grow by a random walk are limited to `widest`.
     pub(super) fn widen(
         self,
         seconds: f64,

@@ -25,6 +25,22 @@ impl Default for ImageLikelihoodChoice {
 }
 
 /// What is computed for each frame, or for each thread, under either likelihood.
+/// ```
+/// # use std::sync::Arc;
+/// # use nalgebra::Vector3;
+/// # use wayfix_color_map::{ColorMap, PinholeCamera};
+/// # use wayfix_color_model::{EitherLikelihood, FeatureLikelihoodParams, ImageLikelihoodChoice, LikelihoodFrameInput, LikelihoodModel, YuvImage};
+/// # let image = YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?;
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let (pixel_color_variance, mean_color_variance) = (Vector3::new(144.0, 36.0, 36.0), Vector3::new(64.0, 16.0, 16.0));
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// let features = ImageLikelihoodChoice::Features(FeatureLikelihoodParams::default());
+/// let frame = features.frame(&input)?;
+/// assert!(matches!(frame, EitherLikelihood::Features(_)));
+/// // The working memory follows the frame, not the model.
+/// assert!(matches!(ImageLikelihoodChoice::default().scratch(&frame), EitherLikelihood::Features(_)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub enum EitherLikelihood<P, F> {
     /// Of pixels.
     Pixels(P),

@@ -17,6 +17,23 @@ use crate::{
 /// A likelihood that the localizer accepts: of a frame, from any camera pose, under each light of a tracker.
 ///
 /// The localizer calls [`frame`](Self::frame) once for each image, and [`log_likelihoods`](Self::log_likelihoods) for each particle.
+/// ```
+/// # use {nalgebra::*, std::sync::Arc, wayfix_color_map::*, wayfix_color_model::*, wayfix_estimation_traits::*, wayfix_gaussian_core::Gaussian};
+/// # let (image, [pixel_color_variance, mean_color_variance]) = (YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?, [Vector3::repeat(64.0); 2]);
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let light = LightingFilter::new(Gaussian::new(DVector::from_vec(vec![90.0, 110.0, 100.0]), DMatrix::identity(3, 3))?, Default::default())?;
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// # let tiled = TiledImage::new(&image, 16, |_| 12.0)?; let mut tiles = TileSums::new(&tiled, 1);
+/// # [0, 1].map(|row| tiles.add_run(&tiled, (row, 0, 2), 0)); tiles.add_covered_rows(&tiled);
+/// // The map shows green in all four pixels; the background has 12 nats.
+/// let view = PredictedMapView { camera_pose: &Pose3::identity(), image: &tiled, tiles: &tiles };
+/// let (model, mut log, mut shown) = (PixelLikelihoodParams::as_published(), [0.0], [PixelSums::default()]);
+/// let frame = model.frame(&input)?;
+/// model.log_likelihoods(&frame, &mut model.scratch(&frame), &view, &light, &mut log, &mut shown);
+/// let pixel = PixelSumDensity::new(&light.color(ColorId(0)))?.log([90, 110, 100]) + 12.0;
+/// assert!((log[0] - 4.0 * pixel).abs() < 1e-9 && shown[0].count() == 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait LikelihoodModel: Send + Sync {
     /// What is computed once for each frame.
     type Frame: Send + Sync;
@@ -26,7 +43,7 @@ pub trait LikelihoodModel: Send + Sync {
     /// Prepares a frame.
     ///
     /// # Errors
-    /// Returns an error if the image does not fit the camera.
+    /// Returns an error if the frame cannot be prepared. The localizer has checked the size of the image.
     fn frame(&self, context: &LikelihoodFrameInput<'_>) -> Result<Self::Frame, ColorModelError>;
 
     /// Working memory for one thread.
@@ -52,6 +69,17 @@ pub trait LikelihoodModel: Send + Sync {
 }
 
 /// An image and what is known about it before any pose.
+/// ```
+/// # use {nalgebra::*, std::sync::Arc, wayfix_color_map::*, wayfix_color_model::*};
+/// # let (image, [pixel_color_variance, mean_color_variance]) = (YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?, [Vector3::repeat(64.0); 2]);
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// let features = FeatureLikelihoodParams::default();
+/// assert!(features.frame(&input).is_ok());
+/// let other_size = LikelihoodFrameInput { camera: PinholeCamera::from_field_of_view(4, 4, 1.0, 1.0)?, ..input };
+/// assert!(matches!(features.frame(&other_size), Err(ColorModelError::ImageSize { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct LikelihoodFrameInput<'a> {
     /// The image.
     pub image: &'a YuvImage,
@@ -68,6 +96,21 @@ pub struct LikelihoodFrameInput<'a> {
 }
 
 /// What the map shows from one camera pose.
+/// ```
+/// # use {nalgebra::*, std::sync::Arc, wayfix_color_map::*, wayfix_color_model::*, wayfix_estimation_traits::*, wayfix_gaussian_core::Gaussian};
+/// # let (image, [pixel_color_variance, mean_color_variance]) = (YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?, [Vector3::repeat(64.0); 2]);
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let light = LightingFilter::new(Gaussian::new(DVector::from_vec(vec![90.0, 110.0, 100.0]), DMatrix::identity(3, 3))?, Default::default())?;
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// let tiled = TiledImage::new(&image, 16, |_| 12.0)?;
+/// let out_of_sight = TileSums::new(&tiled, 1); // the map shows nothing
+/// let view = PredictedMapView { camera_pose: &Pose3::identity(), image: &tiled, tiles: &out_of_sight };
+/// let (model, mut log, mut shown) = (PixelLikelihoodParams::as_published(), [f64::NAN], [PixelSums::default()]);
+/// let frame = model.frame(&input)?;
+/// model.log_likelihoods(&frame, &mut model.scratch(&frame), &view, &light, &mut log, &mut shown);
+/// assert_eq!(log, [0.0]); // as probable as the background
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct PredictedMapView<'a> {
     /// Pose of the camera in the world.
     pub camera_pose: &'a Pose3<f64>,
@@ -78,6 +121,26 @@ pub struct PredictedMapView<'a> {
 }
 
 /// Frame of the pixel likelihood.
+/// ```
+/// # use {nalgebra::*, std::sync::Arc, wayfix_color_map::*, wayfix_color_model::*, wayfix_estimation_traits::*, wayfix_gaussian_core::Gaussian};
+/// # let (image, [pixel_color_variance, mean_color_variance]) = (YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?, [Vector3::repeat(64.0); 2]);
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let light = LightingFilter::new(Gaussian::new(DVector::from_vec(vec![90.0, 110.0, 100.0]), DMatrix::identity(3, 3))?, Default::default())?;
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// # let tiled = TiledImage::new(&image, 16, |_| 12.0)?; let mut tiles = TileSums::new(&tiled, 1);
+/// # tiles.add_run(&tiled, (0, 0, 2), 0); tiles.add_covered_rows(&tiled);
+/// # let view = PredictedMapView { camera_pose: &Pose3::identity(), image: &tiled, tiles: &tiles };
+/// # let model = PixelLikelihoodParams::default();
+/// let log_likelihood = |frame: &PixelLikelihoodFrame| {
+///     let (mut log, mut shown) = ([0.0], [PixelSums::default()]);
+///     model.log_likelihoods(frame, &mut model.scratch(frame), &view, &light, &mut log, &mut shown);
+///     log[0]
+/// };
+/// // The pixels have the mean colour of the light: less noise makes them more probable.
+/// let noisy = LikelihoodFrameInput { pixel_color_variance: 4.0 * input.pixel_color_variance, ..input };
+/// assert!(log_likelihood(&model.frame(&input)?) > log_likelihood(&model.frame(&noisy)?));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PixelLikelihoodFrame {
     pub(crate) pixel_color_variance: Vector3<f64>,
@@ -147,6 +210,26 @@ impl LikelihoodModel for PixelLikelihoodParams {
 }
 
 /// Working memory of [`PixelLikelihoodParams`] as a [`LikelihoodModel`].
+/// ```
+/// # use {nalgebra::*, std::sync::Arc, wayfix_color_map::*, wayfix_color_model::*, wayfix_estimation_traits::*, wayfix_gaussian_core::Gaussian};
+/// # let (image, [pixel_color_variance, mean_color_variance]) = (YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?, [Vector3::repeat(64.0); 2]);
+/// # let (map, camera) = (Arc::new(ColorMap::new(vec!["green".into()], vec![])?), PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// # let light = LightingFilter::new(Gaussian::new(DVector::from_vec(vec![90.0, 110.0, 100.0]), DMatrix::identity(3, 3))?, Default::default())?;
+/// # let input = LikelihoodFrameInput { image: &image, map: &map, camera, colors: &[], pixel_color_variance, mean_color_variance };
+/// # let tiled = TiledImage::new(&image, 16, |_| 12.0)?;
+/// # let [mut one_row, nothing] = [TileSums::new(&tiled, 1), TileSums::new(&tiled, 1)];
+/// # one_row.add_run(&tiled, (0, 0, 2), 0); one_row.add_covered_rows(&tiled);
+/// # let model = PixelLikelihoodParams::default();
+/// let (frame, mut scratch) = (model.frame(&input)?, TileScratch::default());
+/// let logs = [&one_row, &nothing, &one_row].map(|tiles| {
+///     let view = PredictedMapView { camera_pose: &Pose3::identity(), image: &tiled, tiles };
+///     let (mut log, mut shown) = ([0.0], [PixelSums::default()]);
+///     model.log_likelihoods(&frame, &mut scratch, &view, &light, &mut log, &mut shown);
+///     log[0]
+/// });
+/// assert!(logs[0] == logs[2] && logs[0] > logs[1]); // nothing is left of the view before
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Default)]
 pub struct TileScratch {
     tiles: TileLikelihood,

@@ -1,7 +1,7 @@
 /// Occlusion of the whole view, by another robot in front of the camera: a Markov chain of two states.
 ///
 /// With probability $`h`$ the view is hidden, and the frame shows the background: its likelihood relative to the background is $`(1 - h)\, p(z | x) / p_{bg}(z) + h`$. So
-/// a hidden view speaks neither against a place nor for one that does not see the map.
+/// a hidden view gives no evidence against a place, nor for one that does not see the map.
 /// ```
 /// use wayfix_color_model::ViewOcclusionModel;
 /// let occlusion = ViewOcclusionModel { mean_time_free: 9.0, mean_time_hidden: 1.0 };
@@ -15,9 +15,9 @@
     serde(default, deny_unknown_fields)
 )]
 pub struct ViewOcclusionModel {
-    /// Mean time of a free view, s. Default 10.
+    /// Mean time of a free view, s. Default 10: robots of another team pass that often.
     pub mean_time_free: f64,
-    /// Mean time of a hidden view, s; 0 if no view is ever hidden. Default 1.
+    /// Mean time of a hidden view, s; 0 if no view is ever hidden. Default 1: a robot passes by its own length.
     pub mean_time_hidden: f64,
 }
 

@@ -1,8 +1,14 @@
 use nalgebra::{Matrix3, Vector3};
 
-use crate::{ColorDensity, ColorModelError, PixelSums};
+use crate::{ColorDensity, ColorModelError, PixelSums, TiledImage};
 
 /// Whether pixels share the light that is not known.
+/// ```
+/// use wayfix_color_model::{LightErrorCorrelation, LikelihoodModel, PixelLikelihoodParams};
+/// assert_eq!(PixelLikelihoodParams::as_published().light_error_correlation, LightErrorCorrelation::Each);
+/// // Only tiles may be in the shade.
+/// assert!(PixelLikelihoodParams::default().mixes_lights() && !PixelLikelihoodParams::as_published().mixes_lights());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -16,6 +22,21 @@ pub enum LightErrorCorrelation {
 }
 
 /// Parameters of the pixel likelihood.
+/// ```
+/// # use std::sync::Arc;
+/// # use nalgebra::{Matrix3, Vector3};
+/// # use wayfix_color_map::{ColorMap, MapRenderer, PinholeCamera};
+/// # use wayfix_color_model::{ColorDensity, PixelLikelihoodParams, PixelSpanLikelihood, PrefixSumImage, YuvImage};
+/// # let frame = PrefixSumImage::new(&YuvImage::new(2, 2, vec![[90, 110, 100]; 4])?)?;
+/// # let map = Arc::new(ColorMap::new(vec!["green".into()], vec![])?);
+/// # let renderer = MapRenderer::new(map, PinholeCamera::from_field_of_view(2, 2, 1.0, 1.0)?);
+/// let green = ColorDensity { mean: Vector3::new(90.0, 110.0, 100.0), covariance: Matrix3::identity() * 25.0 };
+/// assert_eq!(PixelLikelihoodParams::as_published().shaded([green]), [green]); // the light is even
+/// // Without outliers, one pixel could exclude a pose.
+/// let strict = PixelLikelihoodParams { outlier_share: 0.0, ..PixelLikelihoodParams::default() };
+/// assert!(PixelSpanLikelihood::new(&frame, renderer, strict).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -116,7 +137,8 @@ impl PixelLikelihoodParams {
             if is_within { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
         };
         let Self { tile_pixels, outlier_share, brightness_variation, .. } = *self;
-        check("side of a tile (pixels)", f64::from(tile_pixels), tile_pixels > 0)?;
+        let is_side = (1..=TiledImage::MAX_SIDE).contains(&tile_pixels);
+        check("side of a tile (pixels)", f64::from(tile_pixels), is_side)?;
         check("share of outliers", outlier_share, outlier_share > 0.0 && outlier_share < 1.0)?;
         check(
             "brightness variation",

@@ -8,6 +8,26 @@ use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 ///
 /// Each pixel that the projected map labels with colour `m` counts $`\ln p(c|m) - \ln p_{bg}(c)`$. The paper omits background pixels; without
 /// the ratio, poses that label different numbers of pixels would not be comparable.
+/// ```
+/// # use std::sync::Arc;
+/// # use nalgebra::{Matrix3, Vector3};
+/// # use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera};
+/// # use wayfix_color_model::{CameraPoseLikelihood, ColorDensity, PixelLikelihood, PixelLikelihoodParams, YuvImage};
+/// # use wayfix_estimation_traits::{LieGroup, Pose3};
+/// # let vertices = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(|[y, z]| Vector3::new(2.0, y, z)).to_vec();
+/// # let wall = ColoredShape::Polygon { color: ColorId(0), vertices };
+/// # let map = Arc::new(ColorMap::new(vec!["green".into()], vec![wall])?);
+/// # let renderer = MapRenderer::new(map, PinholeCamera::from_field_of_view(4, 2, 1.0, 0.5)?);
+/// let image = YuvImage::new(4, 2, vec![[90, 110, 100]; 8])?; // a green wall fills the view
+/// let mut likelihood = PixelLikelihood::new(&image, |_| Some(10.0), renderer, PixelLikelihoodParams::default())?;
+/// let mut log = |y| {
+///     let density = ColorDensity { mean: Vector3::new(y, 110.0, 100.0), covariance: Matrix3::identity() * 25.0 };
+///     likelihood.log_likelihood(&Pose3::identity(), &[density])
+/// };
+/// assert!((log(90.0) - 8.0 * (10.0 - 1.5 * (25.0 * std::f64::consts::TAU).ln())).abs() < 1e-9);
+/// assert!((log(10.0) - 8.0 * 0.1_f64.ln()).abs() < 1e-9); // an outlier of probability 0.1 in each pixel
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct PixelLikelihood<'a> {
     image: &'a YuvImage,
     background: Vec<Option<f64>>,

@@ -55,6 +55,26 @@ pub(crate) fn gather_tiles(
 ///
 /// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16] depends on a colour's pixels only through
 /// their number, $`\sum c`$ and $`\sum c c^T`$, and a subtraction gives these for a run of pixels in a row.
+/// ```
+/// # use std::sync::Arc;
+/// # use nalgebra::{Matrix3, Vector3};
+/// # use wayfix_color_map::{ColorId, ColorMap, ColoredShape, MapRenderer, PinholeCamera};
+/// # use wayfix_color_model::{CameraPoseLikelihood, ColorDensity, PixelLikelihood, PixelLikelihoodParams};
+/// # use wayfix_color_model::{PixelSpanLikelihood, PrefixSumImage, YuvImage};
+/// # use wayfix_estimation_traits::{LieGroup, Pose3};
+/// # let vertices = [[-9.0, -9.0], [0.0, -9.0], [0.0, 9.0], [-9.0, 9.0]].map(|[y, z]| Vector3::new(2.0, y, z)).to_vec();
+/// # let wall = ColoredShape::Polygon { color: ColorId(0), vertices };
+/// # let map = Arc::new(ColorMap::new(vec!["green".into()], vec![wall])?);
+/// # let renderer = MapRenderer::new(map, PinholeCamera::from_field_of_view(4, 2, 1.0, 0.5)?);
+/// # let light = [ColorDensity { mean: Vector3::new(90.0, 110.0, 100.0), covariance: Matrix3::identity() * 25.0 }];
+/// let image = YuvImage::new(4, 2, (80..88).map(|y| [y, 110, 100]).collect())?;
+/// let (nats, params) = (|_: [u8; 3]| Some(10.0), PixelLikelihoodParams::as_published());
+/// let frame = PrefixSumImage::with_background(&image, nats)?;
+/// let by_pixels = PixelLikelihood::new(&image, nats, renderer.clone(), params)?.log_likelihood(&Pose3::identity(), &light);
+/// let by_spans = PixelSpanLikelihood::new(&frame, renderer, params)?.log_likelihood(&Pose3::identity(), &light);
+/// assert!(by_spans != 0.0 && (by_spans - by_pixels).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct PixelSpanLikelihood<'a> {
     frame: &'a PrefixSumImage,
     projector: MapRenderer,

@@ -17,8 +17,11 @@ const OUTLIER_SHARES: [(f64, f64); 3] =
 /// ```math
 /// p(z | x, j) = \frac{1}{2} \int_0^1 \! dε\, p(u) \prod_t \big[ (1 - ε)\, r_{tj} + ε \big]
 ///   + \frac{1}{2} \int_0^1 \! dε\, p(u) \prod_t \big[ (1 - ε)\, \tfrac{1}{2} (r_{tj} + r_{ts}) + ε \big], \quad
-/// r_{tj} = \Big[ \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], Σ_j[m,m] + ν + B_t)}{p_{bg}(c)} \Big]^{1/n_t}
+/// r_{tj} = \Big[ q_t \prod_m \prod_{c ∈ (t, m)} \frac{N(c; μ_j[m], V_{jm} + B_t)}{p_{bg}(c)} \Big]^{1/n_t}
 /// ```
+///
+/// $`V_{jm} = \operatorname{diag}(Σ_j[m,m] + ν + σ^2 s_m s_m^\top)`$ has the uneven light of [`PixelLikelihoodParams::shaded`]. $`B_t`$ is the variance between the colours of the tile.
+/// $`q_t`$, for a tile of one colour, is the likelihood ratio of the scatter of its pixels between a surface and the background; else it is 1.
 ///
 /// This is [Schulz & Fox 2004, Eqs. 9, 16] with the $`n_t`$ mapped pixels of a tile as one observation: they share shade and errors of the pose. Their sums suffice. A label that
 /// fits every pixel of an image gains nothing over its average, the background. $`p(u)`$ is the likelihood of

@@ -35,6 +35,14 @@ impl CameraPoseError {
 }
 
 /// Standard deviations of [`CameraPoseError`], and how long an error lasts.
+/// ```
+/// use rand::SeedableRng;
+/// use wayfix_color_model::{CameraPoseError, CameraPoseNoise};
+/// let noise = CameraPoseNoise { rotation_sigma: 0.0, height_sigma: 0.0, correlation_time: 0.2 };
+/// let error = CameraPoseError { height: 0.01, ..CameraPoseError::default() };
+/// let later = noise.after(&error, 0.2, &mut rand_chacha::ChaCha8Rng::seed_from_u64(1));
+/// assert!((later.height - 0.01 * (-1.0_f64).exp()).abs() < 1e-15); // no new error is added
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -45,7 +53,7 @@ impl CameraPoseError {
 pub struct CameraPoseNoise {
     /// Standard deviation of roll, tilt and pan, rad. Default 0.025: the body of a walking four-legged robot sways by 1° to 2°.
     pub rotation_sigma: f64,
-    /// Standard deviation of the height, m. Default 0.008.
+    /// Standard deviation of the height, m. Default 0.008: a body on four legs goes up and down by a centimetre.
     pub height_sigma: f64,
     /// Time constant of the errors' correlation, s; 0 draws independent errors for each frame. Default 0.2: half a step of the gait.
     pub correlation_time: f64,
@@ -89,6 +97,15 @@ impl CameraPoseNoise {
 }
 
 /// The camera's location in six degrees of freedom: the planar body pose and the error of the camera's mount.
+/// ```
+/// # use nalgebra::Vector3;
+/// # use wayfix_color_model::{CameraLocation, CameraPoseError};
+/// # use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+/// let mount = Pose3 { translation: Vector3::new(0.1, 0.0, 0.2), ..Pose3::identity() }; // in front of the body and above it
+/// let error = CameraPoseError { height: 0.01, ..CameraPoseError::default() };
+/// let location = CameraLocation { body: Pose2::new(1.0, 2.0, std::f64::consts::FRAC_PI_2), error };
+/// assert!((location.camera_pose(&mount).translation - Vector3::new(1.0, 2.1, 0.21)).norm() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraLocation {
     /// Pose of the body on the ground.

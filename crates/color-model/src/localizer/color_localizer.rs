@@ -27,8 +27,7 @@ pub(super) const TRACKING_PROBABILITY: f64 = 0.95;
 /// Localizes in a coloured map and learns the light at the same time: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 ///
 /// A particle is a camera location and, conditioned on it, a tracker of the light `T`. The odometry model `M` and the likelihood `L` are parameters too.
-/// Where the start is unknown, and every few seconds while the robot drives, a global search proposes places; [`RelocalizationTest`] decides between them and the
-/// present one.
+/// After 1, 2, 4, … frames, and then every few seconds, a global search proposes places; [`RelocalizationTest`] decides between them and the present one.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -74,7 +73,7 @@ pub struct ColorLocalizer<T = LightingFilterBank, M = OdometryNoise, L = PixelLi
     present: ColorFilter<SunAndShade<T>>,
     relocalization: RelocalizationTest<ColorFilter<SunAndShade<T>>>,
     buffer: FrameBuffer,
-    /// The light of the most probable place before each frame of the buffer.
+    /// The light of the most probable place before each frame of the buffer, the oldest first.
     pub(super) lights: VecDeque<Arc<SunAndShade<T>>>,
     pub(super) n_updates: usize,
     /// Since the last search, s.
@@ -92,6 +91,15 @@ struct PlacesAfterFrame<T> {
 }
 
 /// The models of a [`ColorLocalizer`].
+/// ```
+/// # use {nalgebra::*, rand::SeedableRng, wayfix_color_map::*, wayfix_color_model::*, wayfix_gaussian_core::Gaussian};
+/// # let (start, params, mut rng) = (StartPosePrior::Anywhere, LocalizerParams::default(), rand_chacha::ChaCha8Rng::seed_from_u64(1));
+/// let light = LightingFilter::new(Gaussian::new(DVector::repeat(3, 128.0), DMatrix::identity(3, 3))?, Default::default())?; // of one colour
+/// let models = ColorLocalizerModels { light, odometry: OdometryNoise::default(), likelihood: FeatureLikelihoodParams::default() };
+/// let (map, camera) = (ColorMap::new(vec!["green".into(), "white".into()], vec![])?, PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?);
+/// assert!(matches!(ColorLocalizer::with_models(map.into(), camera, models, &start, params, &mut rng), Err(ColorModelError::Dimension { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct ColorLocalizerModels<T, M, L> {
     /// The light before the first frame.
@@ -144,6 +152,12 @@ where
         let (expected, got) = (map.colors().len(), light.colors()?.len());
         if expected != got {
             return Err(ColorModelError::Dimension { what: "colours of the light", expected, got });
+        }
+        if let Some(withheld) = params.withheld_color.filter(|withheld| *withheld >= expected) {
+            return Err(ColorModelError::OutOfRange { what: "withheld color", value: withheld as f64 });
+        }
+        if light.n_lights() == 0 {
+            return Err(ColorModelError::OutOfRange { what: "number of lights", value: 0.0 });
         }
         let area = Area::of(&map)?;
         check_area(&area, &camera, &params)?;
@@ -357,7 +371,7 @@ where
         let params = &self.params.search;
         // At even odds, the frames support the map at the estimate, one of all places, as much as the background.
         let odds = self.area.n_places() as f64 * TRACKING_PROBABILITY / (1.0 - TRACKING_PROBABILITY);
-        // A hidden camera speaks neither for the map nor against it, and a silent one no more.
+        // A hidden camera gives no evidence, nor does one that is silent.
         let is_seeing = |camera: &&RobotCamera| camera.delta.seconds <= params.search_interval;
         let support = |camera: &RobotCamera| camera.log_support().max(0.0);
         let is_explained = self.cameras.iter().filter(is_seeing).map(support).sum::<f64>() > odds.ln();

@@ -5,6 +5,17 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 /// Mean and covariance of the dominant cluster of particles.
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_color_model::PoseEstimate;
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_gaussian_core::Gaussian;
+/// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 0.5, 0.0), &Vector3::new(0.1, 0.3, 0.05))?;
+/// let estimate = PoseEstimate { pose, share: 0.97 };
+/// assert!((estimate.position_sigma() - 0.3).abs() < 1e-12); // the larger one of 0.1 m along and 0.3 m across
+/// assert!((estimate.heading_sigma() - 0.05).abs() < 1e-12);
+/// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseEstimate {
     /// The cluster's pose, with its covariance in the body frame of the mean (m, rad). The spread of the particles has a lower bound: their

@@ -4,6 +4,18 @@ use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, SampleMotion};
 
 /// Motion of the body over an interval, as odometry reports it.
+/// ```
+/// # use nalgebra::Vector2;
+/// # use rand::SeedableRng;
+/// # use wayfix_color_model::{OdometryNoise, OdometryStep};
+/// # use wayfix_estimation_traits::{Pose2, SampleMotion};
+/// # let exact = OdometryNoise { translation_sigma_per_root_second: 0.0, rotation_sigma_per_root_second: 0.0, ..OdometryNoise::default() };
+/// # let exact = OdometryNoise { relative_sigma: 0.0, ..exact };
+/// # let rng = &mut rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let forward = OdometryStep { increment: Some(Pose2::new(1.0, 0.0, 0.0)), seconds: 2.0 };
+/// let moved = exact.sampler(&forward)(&Pose2::new(0.0, 0.0, std::f64::consts::FRAC_PI_2), rng);
+/// assert!((moved.translation - Vector2::new(0.0, 1.0)).norm() < 1e-12); // along the heading, without noise
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryStep {
     /// Motion in the body frame before the motion; `None` if there is no odometry.
@@ -40,6 +52,16 @@ pub trait OdometryModel: SampleMotion<State = Pose2<f64>, Control = OdometryStep
 }
 
 /// Noise of the odometry of a walking robot: a share of the motion, and a random walk in time.
+/// ```
+/// use wayfix_color_model::{OdometryModel, OdometryNoise, OdometryStep};
+/// use wayfix_estimation_traits::Pose2;
+/// let step = OdometryStep { increment: Some(Pose2::new(1.0, 0.0, 0.0)), seconds: 1.0 };
+/// let (translation, rotation) = OdometryNoise::default().sigmas(&step);
+/// assert!((translation - 0.2_f64.hypot(0.03)).abs() < 1e-12); // m
+/// assert!((rotation - 0.2_f64.hypot(0.06)).abs() < 1e-12); // rad
+/// let (unknown, _) = OdometryNoise::default().sigmas(&OdometryStep { increment: None, ..step });
+/// assert!((unknown - 0.3_f64.hypot(0.03)).abs() < 1e-12); // without odometry
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -52,11 +74,11 @@ pub struct OdometryNoise {
     pub relative_sigma: f64,
     /// Standard deviation of the translation, m per square root of a second, also at rest: other robots push. Default 0.03.
     pub translation_sigma_per_root_second: f64,
-    /// Standard deviation of the rotation, rad per square root of a second, also at rest. Default 0.06.
+    /// Standard deviation of the rotation, rad per square root of a second, also at rest. Default 0.06: such a push at an arm of half a metre.
     pub rotation_sigma_per_root_second: f64,
     /// Standard deviation of the speed without odometry, m/s. Default 0.3: the top speed of a walking robot.
     pub speed_sigma_without_odometry: f64,
-    /// Standard deviation of the turning rate without odometry, rad/s. Default 1.
+    /// Standard deviation of the turning rate without odometry, rad/s. Default 1: the top rate of a walking robot.
     pub turn_rate_sigma_without_odometry: f64,
 }
 

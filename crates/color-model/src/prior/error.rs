@@ -1,6 +1,14 @@
 use wayfix_gaussian_core::{GaussianError, HierarchicalGaussianFit, IterationError};
 
 /// Errors of learning or reading a prior.
+/// ```
+/// use wayfix_color_model::{LabelledPixels, LightingPriorError, YuvImage};
+/// let image = YuvImage::new(2, 1, vec![[90, 110, 100]; 2])?;
+/// let error = LabelledPixels::from_image(&image, (2, 1), &[3, 3], 2).unwrap_err();
+/// assert_eq!(error, LightingPriorError::UnknownLabel { label: 3, n_pixels: 2, n_colors: 2 });
+/// assert_eq!(error.to_string(), "2 pixels have the label 3: colours have 1 to 2, anything else 0");
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LightingPriorError {

@@ -3,6 +3,15 @@ use rand::{Rng, RngExt};
 use super::LightingPriorError;
 
 /// Points split into groups around centres.
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_color_model::k_means;
+/// let points = [0.0, 2.0, 10.0].map(|x| vec![Some(x)]);
+/// let split = k_means(&points, 2, 10, &mut ChaCha8Rng::seed_from_u64(1))?;
+/// assert_eq!(split.centers[split.assignment[1]], [1.0]); // the mean of 0 and 2
+/// assert_eq!(split.distortion, 2.0); // 1² + 1² + 0²
+/// # Ok::<(), wayfix_color_model::LightingPriorError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct KMeans {
     /// The mean of each group; coordinates without a value in the group keep the start value.

@@ -7,6 +7,18 @@ use super::{
 };
 
 /// Parameters of learning priors.
+/// ```
+/// # use nalgebra::Vector3;
+/// # use wayfix_color_model::{ColorMeans, LightingPriorError, PriorLearningParams, TrainingVenue, learn_grouped_priors};
+/// let images = |y| vec![ColorMeans::new([(Some(Vector3::new(y, 110.0, 100.0)), 500)])];
+/// let venue = |y| TrainingVenue { images: images(y), ..TrainingVenue::default() };
+/// let learn = |params: &_| learn_grouped_priors(&["green".into()], &[venue(60.0), venue(90.0)], &[0, 0], params);
+/// let params = PriorLearningParams::default();
+/// assert_eq!(learn(&params), Err(LightingPriorError::UnknownScatter)); // one image per venue
+/// let given = PriorLearningParams { mean_color_variance: Some(Vector3::repeat(4.0)), ..params };
+/// assert!((learn(&given)?.members()[0].mean()[0] - 75.0).abs() < 1e-6);
+/// # Ok::<(), LightingPriorError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorLearningParams {
     /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior. Default 30, 10, 10.

@@ -4,6 +4,13 @@ use super::LightingPriorError;
 use crate::ColorMeans;
 
 /// One environment under one light: the mean colours of each image of it, labels being known. $`\bar t_{1:k}`$ of [Schulz & Fox 2004, III.B]
+/// ```
+/// use wayfix_color_model::{ColorMeans, PriorLearningParams, TrainingVenue, learn_grouped_priors};
+/// let unseen = ColorMeans::new([(None, 0)]);
+/// let lab = TrainingVenue { name: "lab".into(), images: vec![unseen.clone(), unseen], pixels: None };
+/// let error = learn_grouped_priors(&["green".into()], &[lab], &[0], &PriorLearningParams::default()).unwrap_err();
+/// assert_eq!(error.to_string(), "no image of the venue lab shows a colour");
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrainingVenue {
     /// Name for messages.
@@ -15,6 +22,15 @@ pub struct TrainingVenue {
 }
 
 /// Variance of the pixels of one colour in one image, pooled over colours and images.
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_color_model::{LabelledPixels, TrainingVenue};
+/// let mut image = LabelledPixels::new(1);
+/// [10.0, 14.0].iter().for_each(|y| image.add(1, &Vector3::new(*y, 128.0, 128.0)));
+/// let pooled = TrainingVenue::from_labelled_pixels("lab", &[image.clone(), image], 2).pixels.unwrap();
+/// assert_eq!(pooled.degrees_of_freedom, 2.0); // four pixels and two means
+/// assert_eq!(pooled.variances.x, 8.0); // 4 · 2² / 2
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PooledPixelVariance {
     /// Of Y, U and V.

@@ -44,7 +44,7 @@ fn priors_that_are_none_are_refused() {
 }
 
 #[test]
-fn parameters_without_a_meaning_are_refused() {
+fn invalid_parameters_are_refused() {
     let prior = common_gain(&BRIGHT, 0.3);
     let good = LightingFilterParams::default();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {

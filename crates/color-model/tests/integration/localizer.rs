@@ -10,7 +10,7 @@ use wayfix_color_map::{ColorId, ColorMap, ColoredShape};
 use wayfix_color_model::{
     ColorLocalizer, ColorLocalizerModels, ColorModelError, FeatureLikelihoodParams, FrameOutcome,
     GlobalSearchParams, ImageLikelihoodChoice, LocalizationStatus, LocalizerParams, OdometryStep,
-    StartPosePrior, YuvImage,
+    StartPosePrior, TiledImage, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -226,6 +226,8 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
     }
     refused(&|params| params.max_particles = 0);
     refused(&|params| params.pixels.tile_pixels = 0);
+    refused(&|params| params.pixels.tile_pixels = 1 + TiledImage::MAX_SIDE);
+    refused(&|params| params.withheld_color = Some(99));
     refused(&|params| params.search.n_refined_trajectories = 0);
 }
 

@@ -115,7 +115,7 @@ fn second_camera_keeps_the_place_while_the_first_is_silent() {
     }
 }
 
-/// Something stands before it: it speaks neither for the map nor against it.
+/// Something stands before it: it gives no evidence.
 #[test]
 fn covered_second_camera_does_not_make_the_robot_lost() {
     let mut scene = Scene::new();

@@ -20,7 +20,7 @@ pub struct MostProbableState {
 /// A Bayes filter over a finite set of states: state condensation. [Kasprzak & Szynkiewicz, Eqs. 1–6, Fig. 1]
 ///
 /// Belief is kept as probabilities, measurements come as log-likelihoods, and the product is scaled by the best of them before it leaves
-/// the logarithm; if that underflows (the measurement speaks for states that belief all but excludes) it is done in logarithms
+/// the logarithm; if that underflows (the measurement supports states that the belief all but excludes) it is done in logarithms
 /// throughout. So the speed is that of the linear form, and nothing representable is lost.
 ///
 /// ```

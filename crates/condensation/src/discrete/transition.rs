@@ -3,7 +3,7 @@
 /// Linear, so it carries any quantity that goes with the state, not belief alone. **Laws**: what comes out has the sum of what
 /// went in; nonnegative stays nonnegative.
 pub trait TransitionModel {
-    /// How many states it speaks of.
+    /// Number of states.
     fn n_states(&self) -> usize;
 
     /// Writes what becomes of `belief` into `predicted`. Both have [`n_states`](Self::n_states) elements.

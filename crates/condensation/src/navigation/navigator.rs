@@ -127,12 +127,12 @@ impl<S: DiscreteStateSpace> Navigator<S> {
             if certain {
                 steps_to_certainty.get_or_insert(steps);
             }
-            let sure = confirmed >= self.params.n_confirmations.max(1);
+            let is_confirmed = confirmed >= self.params.n_confirmations.max(1);
             let report = |arrival| NavigationReport { arrival, steps, steps_to_certainty, best, kidnappings };
-            if sure && best.state == goal {
+            if is_confirmed && best.state == goal {
                 return Ok(report(NavigationOutcome::Reached));
             }
-            if sure && routes.distance(best.state).is_none() {
+            if is_confirmed && routes.distance(best.state).is_none() {
                 return Ok(report(NavigationOutcome::Unreachable));
             }
             if steps == self.params.max_steps {

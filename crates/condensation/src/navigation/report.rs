@@ -6,9 +6,9 @@ use crate::MostProbableState;
 pub enum NavigationOutcome {
     /// The robot is at the goal with the stated confidence.
     Reached,
-    /// The steps are used up and it is not sure enough.
+    /// The steps are used up, and the belief in the goal is below the stated confidence.
     Unsure,
-    /// It is sure to be where no way leads to the goal.
+    /// With the stated confidence it is where no way leads to the goal.
     Unreachable,
 }
 

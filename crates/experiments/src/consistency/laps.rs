@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_without_meaning_are_refused() {
+    fn invalid_numbers_are_refused() {
         let good = CorridorLaps { n_laps: 1, ..CorridorLaps::default() };
         for bad in [
             CorridorLaps { length_m: f64::NAN, ..good },

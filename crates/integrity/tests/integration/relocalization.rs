@@ -172,6 +172,16 @@ fn unknown_start_is_decided_at_even_odds() {
 }
 
 #[test]
+fn unknown_start_is_decided_without_relocalization_too() {
+    let mut present = 0;
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::off()).unwrap();
+    relocalization.start([(1, -1.0), (2, -5.0)]).unwrap();
+    assert_eq!(relocalization.alternatives().len(), 1, "the last one is hopeless");
+    relocalization.observe(0.0, |_| 1.5).unwrap();
+    assert!(relocalization.decide(&mut present) && present == 1);
+}
+
+#[test]
 fn invalid_numbers_change_nothing() {
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
     relocalization

@@ -197,7 +197,7 @@ fn scans_with_nothing_in_them() {
 }
 
 #[test]
-fn geometry_and_parameters_without_meaning_are_refused() {
+fn invalid_geometry_and_parameters_are_refused() {
     let ranges = [1.0; 10];
     let good = Scan { angle_min: 0.0, angle_increment: 0.01, ranges: &ranges, max_range: 8.0 };
     let mut extractor = LineExtractor::new(LineExtractionParams::default()).expect("the defaults are valid");

@@ -148,7 +148,7 @@ fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
         found += usize::from(compatible);
     }
     // An echo must be five deviations off the line through the end echoes, which are off as well, for a split: 121 chances of some
-    // 4e-5. Not all of those are merged again, since a point that far off is just what speaks against it.
+    // 4e-5. Not all of those are merged again, since a point that far off is evidence against it.
     assert!(in_pieces as f64 <= 0.005 * 2.0 * RUNS as f64, "{in_pieces} walls in pieces");
     // Binomial around 1 - exp(-2); 1 % for echoes left out at the ends and what is of second order.
     let (rate, expected) = (found as f64 / RUNS as f64, 1.0 - (-2.0_f64).exp());

@@ -71,7 +71,7 @@ impl<'a> IndoorDrive<'a> {
     ) -> Result<Self, SimulationError> {
         params.validate()?;
         let step_m = params.robot.speed_mps * f64::from(params.view_period_ms) * 1e-3;
-        check::positive("way between two views (m)", step_m)?;
+        check::positive("distance between two views (m)", step_m)?;
         let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(RandomStreamPurpose::Crowd));
         let ambient_light =
             AmbientLight::new(params.ambient_light, building.n_lamps, building.n_curtains, &mut streams);

@@ -55,7 +55,7 @@ pub struct LeagueDrive {
     n_taken: usize,
 }
 
-/// The odometry speaks this long before the shutter opens.
+/// The odometry is sent this long before the shutter opens.
 const ODOMETRY_LEAD_MS: u64 = 1;
 
 impl LeagueDrive {

@@ -133,11 +133,11 @@ fn read_detections(
         let target = targets.get(&barcode).copied().unwrap_or(DetectionTarget::UnknownCode(barcode));
         Ok((stamp, Detection { target, range: number(range)?, bearing: number(bearing)? }))
     })?;
-    let mut looks: BTreeMap<Stamp, Vec<Detection>> = BTreeMap::new();
+    let mut scans: BTreeMap<Stamp, Vec<Detection>> = BTreeMap::new();
     for Timed { stamp, item: detection, .. } in detections {
-        looks.entry(stamp).or_default().push(detection);
+        scans.entry(stamp).or_default().push(detection);
     }
-    Ok(looks
+    Ok(scans
         .into_iter()
         .map(|(stamp, detections)| Record { stamp, data: RecordData::Detections(detections) })
         .collect())

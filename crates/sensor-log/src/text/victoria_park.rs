@@ -79,9 +79,9 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
         read_rows(path, header, report, |row| take(row, DetectionTarget::Unlabelled))?
     };
-    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Detection>)> = BTreeMap::new();
+    let mut scans: BTreeMap<Stamp, (Vec<f64>, Vec<Detection>)> = BTreeMap::new();
     for Timed { stamp, item: (width, detection), .. } in trees {
-        let (widths, detections) = looks.entry(stamp).or_default();
+        let (widths, detections) = scans.entry(stamp).or_default();
         widths.push(width);
         detections.push(detection);
     }
@@ -89,7 +89,7 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         [RecordData::DetectionWidths(widths), RecordData::Detections(detections)]
             .map(|data| Record { stamp, data })
     };
-    Ok(looks.into_iter().flat_map(to_records).collect())
+    Ok(scans.into_iter().flat_map(to_records).collect())
 }
 
 /// Whether the header has this many columns.

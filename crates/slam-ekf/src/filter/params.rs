@@ -68,13 +68,13 @@ pub enum UpdateOrder {
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_slam_ekf::*;
 ///
-/// let look = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
+/// let scan = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
 /// let robot = |covariance_update| {
 ///     let params = SlamParams { covariance_update, ..SlamParams::default() };
 ///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIdAssociation)?;
+///     slam.update(&scan, &mut KnownIdAssociation)?;
 ///     slam.predict(&OdometryMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
-///     slam.update(&look, &mut KnownIdAssociation)?;
+///     slam.update(&scan, &mut KnownIdAssociation)?;
 ///     Ok::<_, SlamError>(slam.robot().x())
 /// };
 /// assert!((robot(CovarianceUpdate::Full)? - robot(CovarianceUpdate::Compressed)?).abs() < 1e-12);

@@ -1,7 +1,6 @@
 use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix1, Matrix4, OMatrix, Vector1, Vector4};
-use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, SensorModel, TangentMatrix};
+use wayfix_estimation_traits::{Jacobian, Manifold, Pose2, SensorModel, TangentMatrix};
 
-use super::OdometryMotion;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
 
 /// A pose and the heading drift of its odometry.
@@ -31,39 +30,6 @@ impl Manifold for PoseWithHeadingDrift {
     }
     fn chart_jacobian(&self, at: &Self) -> Matrix4<f64> {
         self.pose.chart_jacobian(&at.pose).to_homogeneous()
-    }
-}
-
-/// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ is constant.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct MotionWithHeadingDrift(pub OdometryMotion);
-
-impl MotionWithHeadingDrift {
-    fn increment(state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Pose2<f64> {
-        let turn = increment.heading() + state.heading_drift * increment.translation.norm();
-        Pose2::new(increment.x(), increment.y(), turn)
-    }
-}
-
-impl MotionModel for MotionWithHeadingDrift {
-    type State = PoseWithHeadingDrift;
-    type Control = Pose2<f64>;
-
-    fn propagate(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> PoseWithHeadingDrift {
-        let moved = Self::increment(state, increment);
-        PoseWithHeadingDrift { pose: self.0.propagate(&state.pose, &moved), ..*state }
-    }
-    fn jacobian(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Matrix4<f64> {
-        let moved = Self::increment(state, increment);
-        let mut jacobian = self.0.jacobian(&state.pose, &moved).to_homogeneous();
-        jacobian.m34 = increment.translation.norm();
-        jacobian
-    }
-    fn noise(&self, state: &PoseWithHeadingDrift, increment: &Pose2<f64>) -> Matrix4<f64> {
-        let mut noise = Matrix4::zeros();
-        let of_pose = self.0.noise(&state.pose, &Self::increment(state, increment));
-        noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&of_pose);
-        noise
     }
 }
 

@@ -20,9 +20,7 @@ mod wall;
 
 pub use ackermann::AckermannVehicle;
 pub use correlated_noise::CorrelatedNoise;
-pub use drifting::{
-    HeadingDriftSensor, MotionWithHeadingDrift, PoseWithHeadingDrift, SensorWithHeadingDrift,
-};
+pub use drifting::{HeadingDriftSensor, PoseWithHeadingDrift, SensorWithHeadingDrift};
 pub use external::{
     ExternalError, ExternalParams, HeadingSensor, LocalPlane, MapMeasurement, MovedSensor, PlanarRobot,
     PoseSensor, PositionSensor,

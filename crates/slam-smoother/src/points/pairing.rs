@@ -32,7 +32,7 @@ impl PointSmoother {
     /// Pairs the detections of the window anew at the smoothed poses and places; how many have another landmark.
     ///
     /// With poses and places held, a scan takes other pairings if no detection has a larger $`r^T Ω r`$ then: this half of a coordinate descent lowers
-    /// the cost of the window, as its solution with held pairings does. A landmark takes one detection of a scan. A landmark that nothing speaks for
+    /// the cost of the window, as its solution with held pairings does. A landmark takes one detection of a scan. A landmark without evidence
     /// any more leaves the map.
     pub(super) fn pair_anew(&mut self) -> Result<usize, SlamSmootherError> {
         let (landmarks, scans) = (self.landmark_list()?, self.scans());

@@ -92,7 +92,7 @@ impl RelativeMotion {
         poses.iter().all(Pose2::is_finite) && numbers.into_iter().all(|number| number.is_finite())
     }
 
-    /// How sure the motion is, the drift and its variance included.
+    /// Covariance of the motion, with that of the drift.
     pub(super) fn total_covariance(&self, drift_variance: f64) -> Matrix3<f64> {
         self.covariance
             + self.drift_jacobian * drift_variance * self.drift_jacobian.transpose()

@@ -67,7 +67,7 @@ impl HeadTrackerParams {
             ("gradient weight", self.gradient_weight.unwrap_or(0.0)),
             ("color_adaptation_rate", self.color_adaptation_rate),
             ("intersection to adapt", self.adapt_above_intersection),
-            ("intersection for doubt", self.no_evidence_below_intersection),
+            ("no evidence below intersection", self.no_evidence_below_intersection),
         ] {
             probability(what, value)?;
         }

@@ -6,14 +6,17 @@ use std::{
 
 use anyhow::{Context, Result, ensure};
 use wayfix_evaluation::{
+    plot::SvgPlot,
     report::{FullReport, Metric, PeerValue, ReportRun, ReportSuite, table, table::TableStyle},
     terminal::print,
 };
 
+use super::outputs::figure_file;
+
 /// Compare two reports: the figures of B next to those of A.
 ///
 /// Runs are matched by suite and name. Two reports with one run each, of the same suite, are compared even if the names differ. Figures in only
-/// one report are skipped and counted. Times are not compared.
+/// one report are skipped and counted. Times are not compared. A page of `--out` has the pictures of two runs beside each other.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -36,7 +39,8 @@ Examples:
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let (a, b) = (read(&arguments.a)?, read(&arguments.b)?);
-    let compared = compared(&a, &b, &arguments.a.display().to_string(), arguments.all);
+    let names = [&arguments.a, &arguments.b].map(|path| path.display().to_string());
+    let compared = compared(&a, &b, &names, arguments.all);
     ensure!(!compared.suites.is_empty() || has_common_run(&a, &b), "the two reports have no run in common");
     if let Some(out) = &arguments.out {
         compared.write(out)?;
@@ -54,20 +58,52 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 fn read(path: &Path) -> Result<FullReport> {
     let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
     let text = fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
-    serde_json::from_slice(&text).with_context(|| format!("{} is no report", file.display()))
+    let mut report: FullReport =
+        serde_json::from_slice(&text).with_context(|| format!("{} is no report", file.display()))?;
+    // Only a report of one run has its pictures as files.
+    if let [ReportSuite { runs, .. }] = &mut report.suites[..]
+        && let [run] = &mut runs[..]
+    {
+        for (number, figure) in run.figures.iter_mut().enumerate() {
+            figure.svg = inline(&file.with_file_name(figure_file(number))).unwrap_or_default();
+        }
+    }
+    Ok(report)
+}
+
+/// The drawing of a picture's file, without its palette: the page has its own.
+fn inline(path: &Path) -> Option<String> {
+    let text = fs::read_to_string(path).ok()?;
+    let (before, rest) = text.split_once("<style>")?;
+    let (_, after) = rest.split_once("</style>")?;
+    Some(format!("{before}{after}"))
+}
+
+/// The pictures of both runs that have the same title, one beside the other.
+fn pictures(run: &ReportRun, other: &ReportRun, [a, b]: &[String; 2]) -> Vec<SvgPlot> {
+    let drawn =
+        |run: &ReportRun| run.figures.iter().filter(|figure| !figure.svg.is_empty()).cloned().collect();
+    let (figures, others): (Vec<SvgPlot>, Vec<SvgPlot>) = (drawn(run), drawn(other));
+    let named =
+        |figure: SvgPlot, name: &str| SvgPlot { title: format!("{name}: {}", figure.title), ..figure };
+    let beside = |figure: SvgPlot| {
+        let other = others.iter().find(|other| other.title == figure.title)?.clone();
+        Some([named(other, a), named(figure, b)])
+    };
+    figures.into_iter().filter_map(beside).flatten().collect()
 }
 
 /// The report of B, with the figures of A as those of another program.
-fn compared(a: &FullReport, b: &FullReport, name: &str, all: bool) -> FullReport {
+fn compared(a: &FullReport, b: &FullReport, names: &[String; 2], all: bool) -> FullReport {
     let suite = |suite: &ReportSuite| {
         let runs = suite.runs.iter().filter_map(|run| {
             let other = counterpart(a, b, &suite.name, run)?;
             let metrics: Vec<Metric> =
-                run.metrics.iter().filter_map(|metric| beside(metric, other, name, all)).collect();
+                run.metrics.iter().filter_map(|metric| beside(metric, other, &names[0], all)).collect();
             let (n_of_a, n_of_b) = (n_alone(other, run), n_alone(run, other));
             let notes = (n_of_a + n_of_b > 0).then(|| alone(n_of_a, n_of_b));
             let kept = ReportRun {
-                figures: Vec::new(),
+                figures: pictures(run, other, names),
                 timings: Vec::new(),
                 log: None,
                 layout: None,
@@ -128,15 +164,31 @@ mod tests {
     }
 
     #[test]
+    fn pictures_of_one_title_stand_beside_each_other() {
+        let figure = |title: &str, svg: &str| SvgPlot {
+            title: title.to_owned(),
+            svg: svg.to_owned(),
+            ..SvgPlot::default()
+        };
+        let run = |figures| ReportRun { figures, ..ReportRun::default() };
+        let a = run(vec![figure("Path", "<svg>a</svg>"), figure("Only A", "<svg/>")]);
+        let b = run(vec![figure("Path", "<svg>b</svg>"), figure("Without a file", "")]);
+        let titles: Vec<String> =
+            pictures(&b, &a, &["A", "B"].map(str::to_owned)).into_iter().map(|figure| figure.title).collect();
+        assert_eq!(titles, ["A: Path", "B: Path"]);
+    }
+
+    #[test]
     fn figures_that_differ_stand_beside_each_other() {
         let a = report("monday", &[("ate_rmse_m", 0.2), ("n_landmarks", 15.0)]);
         let b = report("tuesday", &[("ate_rmse_m", 0.1), ("n_landmarks", 15.0), ("nees_mean", 3.0)]);
-        let found = compared(&a, &b, "A", false);
+        let names = ["A", "B"].map(str::to_owned);
+        let found = compared(&a, &b, &names, false);
         let run = &found.suites[0].runs[0];
         assert_eq!(run.metrics.len(), 1);
         assert_eq!((run.metrics[0].value, run.metrics[0].peer.as_ref().unwrap().value), (0.1, 0.2));
         assert_eq!(run.notes, ["0 figures are in A only, 1 in B only."]);
-        assert_eq!(compared(&a, &b, "A", true).suites[0].runs[0].metrics.len(), 2);
-        assert!(compared(&a, &a, "A", false).suites.is_empty() && has_common_run(&a, &a));
+        assert_eq!(compared(&a, &b, &names, true).suites[0].runs[0].metrics.len(), 2);
+        assert!(compared(&a, &a, &names, false).suites.is_empty() && has_common_run(&a, &a));
     }
 }

@@ -113,9 +113,14 @@ impl<'a> Outputs<'a> {
     }
 }
 
+/// File of the picture with this index.
+pub(super) fn figure_file(index: usize) -> String {
+    format!("figure-{}.svg", index + 1)
+}
+
 fn write_report(out: &Path, suite: &str, run: ReportRun, seed: u64) -> Result<()> {
     for (number, figure) in run.figures.iter().enumerate() {
-        let path = out.join(format!("figure-{}.svg", number + 1));
+        let path = out.join(figure_file(number));
         fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();

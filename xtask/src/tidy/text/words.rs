@@ -33,9 +33,11 @@ pub(in crate::tidy) fn check(sources: &[Source]) -> Vec<Finding> {
 
 fn in_line<'a>(source: &'a Source, (index, line): (usize, &str)) -> impl Iterator<Item = Finding> + use<'a> {
     let line = line.to_lowercase();
+    // The words of a name.
+    let names = line.replace('_', " ");
     WORDS
         .iter()
-        .filter(move |(word, _)| is_word(&line, word))
+        .filter(move |(word, _)| is_word(&line, word) || is_word(&names, word))
         .map(move |(word, instead)| Finding::new(&source.path, index + 1, format!("`{word}`"), instead))
 }
 
@@ -58,6 +60,12 @@ mod tests {
         let text = format!("fine\nFor {} is lost.\n", WORDS[0].0);
         let findings = check(&[source("docs/x.md", &text)]);
         assert_eq!(findings.iter().map(|finding| finding.line).collect::<Vec<_>>(), [2]);
+    }
+
+    #[test]
+    fn listed_words_are_found_in_a_name() {
+        let text = format!("fn angle_{}_is_refused() {{}}\n", WORDS[5].0.replace(' ', "_"));
+        assert_eq!(check(&[source("crates/x/src/lib.rs", &text)]).len(), 1);
     }
 
     #[test]

@@ -3,6 +3,16 @@ use std::collections::VecDeque;
 use crate::AppearanceMapError;
 
 /// The difference of two views, and the distance between them along the path.
+///
+/// ```
+/// use wayfix_appearance_cml::{ViewDifferenceModel, ViewDifferenceSample};
+/// let mut scale = ViewDifferenceModel::default();
+/// for distance in [0.3, 9.0, 0.3] {
+///     scale.add_near(ViewDifferenceSample { lag: 0.25, distance }); // a person occludes the second view
+/// }
+/// // While far places are unknown, the sill is twice the median difference.
+/// assert!((scale.match_limit(1.0) - 0.6).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDifferenceSample {
     /// Distance along the path, m.
@@ -26,7 +36,7 @@ pub struct ViewDifferenceSample {
 ///     scale.add_far(3.0);
 /// }
 /// assert!((scale.step() - 0.1).abs() < 1e-12);
-/// // 1.5² - 1² a 0.4 m: a view that differs by 1.5 is 0.4 m further than one that differs by 1.
+/// // 1.5² - 1² per 0.4 m: a view that differs by 1.5 is 0.4 m further than one that differs by 1.
 /// assert!((scale.to_meters(1.5) - scale.to_meters(1.0) - 0.4).abs() < 1e-9);
 /// assert!(scale.match_limit(0.8) > 1.5 && scale.match_limit(0.8) < 3.0);
 /// ```

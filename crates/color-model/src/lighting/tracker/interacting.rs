@@ -15,6 +15,26 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingF
 ///
 /// Its models share one state, so an inactive light of the bank cannot keep its own. They differ in the motion of the state: it drifts, or
 /// it switches to one of the bank's lights and restarts at its prior. [Blom & Bar-Shalom 1988]
+/// ```
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker};
+/// # use wayfix_color_model::ImmLightingTracker;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # use wayfix_kalman::MarkovChain;
+/// # let light = |y: f64| {
+/// #     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 100.0)?;
+/// #     LightingFilter::new(prior, LightingFilterParams::default())
+/// # };
+/// let bank = LightingFilterBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
+/// let mut tracker = ImmLightingTracker::new(&bank)?;
+/// for y in [150.0, 66.0, 150.0] {
+///     tracker.predict(0.04)?;
+///     tracker.update(&ColorMeans::new([(Some(Vector3::new(y, 128.0, 128.0)), 500)]))?;
+/// }
+/// assert!(tracker.probabilities()[2] > 0.99); // it has just switched to the second light
+/// assert!((tracker.colors()?[0].mean.x - 153.9).abs() < 0.1); // 160 - 10 · 100 / 164: the 150 of the first image is forgotten
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone)]
 pub struct ImmLightingTracker {
     filter: ImmFilter<LightMotion, SequentialUpdateAlgorithm>,
@@ -22,6 +42,27 @@ pub struct ImmLightingTracker {
 }
 
 /// As [`ImmLightingTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
+/// ```
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterBank, LightingFilterParams, LightingTracker};
+/// # use wayfix_color_model::Gpb2LightingTracker;
+/// # use wayfix_gaussian_core::Gaussian;
+/// # use wayfix_kalman::MarkovChain;
+/// # let light = |y: f64| {
+/// #     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 100.0)?;
+/// #     LightingFilter::new(prior, LightingFilterParams::default())
+/// # };
+/// # let bank = LightingFilterBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
+/// let mut tracker = Gpb2LightingTracker::new(&bank)?;
+/// let mut see = |y: f64| {
+///     tracker.predict(0.04)?;
+///     tracker.update(&ColorMeans::new([(Some(Vector3::new(y, 128.0, 128.0)), 500)]))?;
+///     Ok::<_, wayfix_color_model::ColorModelError>(tracker.probabilities())
+/// };
+/// let [_, second, third] = [see(150.0)?, see(66.0)?, see(66.0)?];
+/// assert!(second[1] > 0.99 && third[0] > 0.9); // a switch to the first light, then drift
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone)]
 pub struct Gpb2LightingTracker {
     filter: Gpb2Filter<LightMotion, SequentialUpdateAlgorithm>,

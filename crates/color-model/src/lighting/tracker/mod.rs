@@ -24,6 +24,20 @@ use crate::ColorModelError;
 /// | [`Gpb2LightingTracker`] | the same, mixed one image later | (members + 1)² |
 ///
 /// **Laws**: a call that fails changes nothing; without images [`colors`](Self::colors) never become more certain.
+/// ```
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use wayfix_color_model::{ColorModelError, LightingFilter, LightingFilterParams, LightingTracker};
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let prior = Gaussian::new(DVector::from_vec(vec![100.0, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// fn keeps_laws(light: &mut impl LightingTracker) -> Result<bool, ColorModelError> {
+///     let before = light.colors()?;
+///     let is_unchanged = light.predict(-1.0).is_err() && light.colors()? == before;
+///     light.predict(1.0)?;
+///     Ok(is_unchanged && light.colors()?[0].covariance[(0, 0)] >= before[0].covariance[(0, 0)])
+/// }
+/// assert!(keeps_laws(&mut LightingFilter::new(prior, LightingFilterParams::default())?)?);
+/// # Ok::<(), ColorModelError>(())
+/// ```
 pub trait LightingTracker {
     /// Lets `seconds` pass.
     ///
@@ -68,7 +82,7 @@ pub trait LightingTracker {
     /// [`update`](Self::update) with an image taken in this light.
     ///
     /// # Errors
-    /// As for [`update`](Self::update), and if there is no such light.
+    /// As for [`update`](Self::update). A tracker of several lights returns an error if there is no such light.
     fn update_in(&mut self, _light: usize, means: &ColorMeans) -> Result<(), ColorModelError> {
         self.update(means)
     }

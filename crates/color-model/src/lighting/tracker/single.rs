@@ -42,7 +42,9 @@ impl LightingTracker for LightingFilterBank {
         self.switch_probability(light)
     }
     fn colors_in(&self, light: usize) -> Result<Vec<ColorDensity>, ColorModelError> {
-        Ok(self.member(light).colors().collect())
+        let filter = self.members().get(light);
+        let missing = ColorModelError::OutOfRange { what: "number of a light", value: light as f64 };
+        Ok(filter.ok_or(missing)?.colors().collect())
     }
     fn joint_belief(&self, light: usize) -> Option<(&DVector<f64>, &DMatrix<f64>)> {
         let filter = self.members().get(light)?;

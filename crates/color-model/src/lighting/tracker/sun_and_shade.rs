@@ -6,6 +6,19 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilterParams};
 /// A light, and another one of the same kind that shines on a part of what the camera sees: the sun, and the shade on the same carpet.
 ///
 /// Its lights are those of the sun, then those of the shade in the same order. Both have the same prior; each learns from its own pixels.
+/// ```
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use wayfix_color_model::{ColorMeans, LightingFilter, LightingFilterParams, LightingTracker, SunAndShade};
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let prior = Gaussian::new(DVector::from_vec(vec![100.0, 128.0, 128.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// let mut light = SunAndShade::new(LightingFilter::new(prior, LightingFilterParams::default())?, true);
+/// assert_eq!((light.n_lights(), light.shade_of(0)), (2, Some(1)));
+/// assert_eq!(light.light_probability(1), 0.0); // an image is never in the shade as a whole
+/// light.update_in(1, &ColorMeans::new([(Some(Vector3::new(60.0, 128.0, 128.0)), 500)]))?;
+/// assert!(light.colors_in(1)?[0].mean.x < 70.0);
+/// assert_eq!(light.colors_in(0)?[0].mean.x, 100.0); // the sun is as before
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct SunAndShade<T> {
     pub(crate) sun: T,

@@ -74,6 +74,13 @@ pub(crate) fn check_area(
     camera: &PinholeCamera,
     params: &LocalizerParams,
 ) -> Result<(), ColorModelError> {
+    let side = camera.width().min(camera.height());
+    if params.search.samples_per_place > 0.0 && side < u32::from(SHRINK[0]) {
+        return Err(ColorModelError::OutOfRange {
+            what: "side of the camera's image (pixels)",
+            value: side.into(),
+        });
+    }
     let n_cells = area.cells(&cell(camera, &params.pixels)).iter().map(|n| *n as f64).product::<f64>();
     let n_samples = params.search.samples_per_place * n_cells;
     if n_samples <= MOST_SAMPLES as f64 {

@@ -7,6 +7,30 @@ use wayfix_gaussian_core::Gaussian;
 use crate::{ColorModelError, localizer::estimate::PLACE_RADIUS};
 
 /// Prior of the start pose.
+/// ```
+/// # use std::sync::Arc;
+/// # use nalgebra::{DMatrix, DVector, Vector3};
+/// # use rand::SeedableRng;
+/// # use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
+/// # use wayfix_color_model::{ColorLocalizer, LightingFilter, LightingFilterParams, LocalizerParams, StartPosePrior};
+/// # use wayfix_estimation_traits::{LieGroup, Pose2};
+/// # use wayfix_gaussian_core::Gaussian;
+/// # let vertices = [(-2.0, -1.5), (2.0, -1.5), (2.0, 1.5), (-2.0, 1.5)].map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
+/// # let map = Arc::new(ColorMap::new(vec!["green".into()], vec![ColoredShape::Polygon { color: ColorId(0), vertices }])?);
+/// # let prior = Gaussian::new(DVector::from_vec(vec![70.0, 120.0, 110.0]), DMatrix::identity(3, 3) * 400.0)?;
+/// # let light = LightingFilter::new(prior, LightingFilterParams::default())?;
+/// # let camera = PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?;
+/// # let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let mut farthest = |start: StartPosePrior| {
+///     let localizer = ColorLocalizer::new(map.clone(), camera, light.clone(), &start, LocalizerParams::default(), &mut rng)?;
+///     Ok::<_, wayfix_color_model::ColorModelError>(localizer.poses().map(|(pose, _)| pose.translation.norm()).fold(0.0, f64::max))
+/// };
+/// let near = Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?;
+/// assert!(farthest(StartPosePrior::Near(near))? < 0.6); // six standard deviations
+/// let corner = 2.0_f64.hypot(1.5); // of a field of 4 m × 3 m
+/// assert!((0.9 * corner..corner).contains(&farthest(StartPosePrior::Anywhere)?));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum StartPosePrior {
     /// Normally distributed.

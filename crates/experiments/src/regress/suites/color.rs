@@ -46,6 +46,9 @@ struct Settings {
     /// Names of the labelled images to draw.
     #[serde(default)]
     shown: Vec<String>,
+    /// Names of the bags of real places.
+    #[serde(default)]
+    places: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -78,6 +81,8 @@ enum Experiment {
     Venues,
     /// Labelled images of a real field.
     LabelledImages,
+    /// Localization at places of a real field.
+    RealPlaces,
 }
 
 /// Paints half as far from grey as those of the league: chosen before any run, as a halving.
@@ -163,6 +168,7 @@ pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
         Experiment::FrameTime => experiments::frame_time(&records(job, None)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
         Experiment::LabelledImages => crate::labelled::run(job.log()?, &settings.shown, &params),
+        Experiment::RealPlaces => experiments::real_places(job.log()?, &settings.places, seeds, &params),
     }
 }
 

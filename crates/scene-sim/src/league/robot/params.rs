@@ -131,9 +131,9 @@ impl LeggedRobotParams {
         let Self { walk, sway, head, odometry } = self;
         check::not_negative("speed (m/s)", walk.speed_mps)?;
         check::positive("turning rate (rad/s)", walk.turn_radps)?;
-        check::positive("lag of the gait (s)", walk.speed_time_constant_s)?;
+        check::positive("speed time constant (s)", walk.speed_time_constant_s)?;
         check::not_negative("rest (s)", walk.mean_rest_s)?;
-        check::share("ways walked sideways", walk.sideways_share)?;
+        check::share("share of walks sideways", walk.sideways_share)?;
         check::not_negative("margin (m)", walk.min_board_distance_m)?;
         check::at_most("margin (m)", walk.min_board_distance_m, 1.0, "at most 1")?;
         check::positive("stride (s)", sway.stride_period_s)?;

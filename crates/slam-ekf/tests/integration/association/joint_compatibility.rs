@@ -221,7 +221,7 @@ fn looks_without_anything_usable_leave_the_map_as_it_is() {
 }
 
 #[test]
-fn thresholds_without_meaning_are_refused() {
+fn invalid_thresholds_are_refused() {
     for (probability, certainly_new, name) in [
         (0.0, 40.0, "gate_probability"),
         (1.0, 40.0, "gate_probability"),

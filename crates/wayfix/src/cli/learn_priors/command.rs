@@ -121,7 +121,8 @@ struct GroupedImages<'a> {
 fn grouped<'a>(images: &'a [LabelledImage], arguments: &Arguments) -> Result<GroupedImages<'a>> {
     let Some(path) = &arguments.groups else {
         note("no --groups: all images are one venue".to_owned());
-        let venues = vec![("images".to_owned(), images.iter().collect())];
+        let folder = arguments.images.file_name().unwrap_or(arguments.images.as_os_str());
+        let venues = vec![(folder.to_string_lossy().into_owned(), images.iter().collect())];
         return Ok(GroupedImages { venues, light_of: BTreeMap::new() });
     };
     let mut table = VenueTable::read(path)?;
@@ -150,8 +151,12 @@ impl GroupedImages<'_> {
         if self.light_of.is_empty() {
             let (k, rng) = (arguments.lights, &mut ChaCha8Rng::seed_from_u64(arguments.seed));
             let restarts = PriorLearningParams::default().n_restarts;
-            let lights = split_by_brightness(venues, n_colors, k, restarts, rng)
-                .with_context(|| format!("--lights {k}"))?;
+            ensure!(
+                venues.len() >= k,
+                "--lights {k}: {} venue(s) cannot be split into {k} kinds of light; --groups names venues",
+                venues.len()
+            );
+            let lights = split_by_brightness(venues, n_colors, k, restarts, rng)?;
             return Ok(((1..=k).map(|light| format!("light {light}")).collect(), lights));
         }
         ensure!(

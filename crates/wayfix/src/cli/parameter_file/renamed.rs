@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 212] = [
+const RENAMED: [(&str, &str); 211] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -66,7 +66,6 @@ const RENAMED: [(&str, &str); 212] = [
     ("found_above", "found_above_quality"),
     ("found_from", "found_above_quality"),
     ("greatest_count", "max_effective_observation_count"),
-    ("greatest_sigma", "max_sigma"),
     ("grey_share", "gray_channel_share"),
     ("heading", "heading_sigma"),
     ("heading_per_meter", "heading_sigma_per_meter"),
@@ -223,7 +222,7 @@ pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>
 }
 
 /// Old name, a name beside which it stood, and what replaces it.
-const REPLACED: [(&str, &str, &str); 16] = [
+const REPLACED: [(&str, &str, &str); 17] = [
     ("doubtful_fit", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("fast_rate", "relocalization", "`relocalization` decides when the robot has been moved"),
     ("lost_fit", "relocalization", "a pose is lost if the last frames do not support it over the background"),
@@ -244,6 +243,11 @@ const REPLACED: [(&str, &str, &str); 16] = [
     ("most_matches", "unimodal_min_weight", "`mixture_reduction.max_components` holds for matches too"),
     ("patience", "unimodal_min_weight", "`relocalization.alternative_kept_distance` bounds the wait"),
     ("place_gate", "max_match_difference_share", "`fusion.gate` holds for places too"),
+    (
+        "uniform_share",
+        "outlier_share",
+        "the share of the colours that no view has shown follows from their number",
+    ),
 ];
 
 /// What replaces `old`, which stood among the allowed names.

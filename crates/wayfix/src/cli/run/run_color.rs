@@ -68,7 +68,8 @@ pub(in crate::cli) struct Arguments {
     /// anywhere].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     start: Option<StartArgument>,
-    /// The localizer as published by Schulz & Fox, without the additions: no search, no relocalization, no occlusion. Noise of odometry and camera stays.
+    /// The localizer as published by Schulz & Fox, without the additions: no search, no relocalization, no occlusion, no shade. It replaces `[localizer]` of --params, but
+    /// for odometry and camera; variances and drift of the light stay.
     #[arg(long)]
     as_published: bool,
     #[command(flatten)]
@@ -206,6 +207,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         );
     }
 
+    if arguments.priors.is_none() && color.system.events().get("tracking") == 0 {
+        color.system.events().warn("priors_doubtful", NEVER_TRACKED);
+    }
+
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
     let run = ReportRun { name, seconds, warnings, ..color::summarize(&mut color) };
@@ -226,6 +231,9 @@ fn second_camera(log: &[PathBuf], topics: Vec<String>) -> Result<Option<(RecordI
     let overview = read_overview(open, 0).context("cannot read the log of the second camera")?;
     Ok(Some((Box::new(open()?), overview.read)))
 }
+
+const NEVER_TRACKED: &str = "no place was tracked, and the priors of the colours are those of simulated halls: `wayfix learn-priors` learns your own, \
+`--priors broad` allows any lamp";
 
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;

@@ -1,0 +1,129 @@
+use std::{f64::consts::PI, path::Path, sync::Arc};
+
+use anyhow::{Context, Result, ensure};
+use rayon::prelude::*;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::{LightingFilterBank, LocalizationStatus};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::{
+    errors::PoseWithTruth,
+    report::{Metric, ReportRun},
+};
+use wayfix_sensor_log::{LogOpenOptions, Record, RecordData, Stamp};
+use wayfix_systems::color::{
+    ColorRunSetup, ColorSystemParams, StartPose, StartPoseUncertainty, priors, read_map, run,
+};
+
+/// A start that people state for a robot which they put down: half a metre, 15°.
+const NEAR: StartPoseUncertainty = StartPoseUncertainty { position_sigma: 0.5, heading_sigma: PI / 12.0 };
+/// A pose is right within these of the true one.
+const MAX_POSITION_ERROR: f64 = 0.25;
+const MAX_HEADING_ERROR: f64 = PI / 30.0;
+
+/// Localization of a standing robot at places of a real field, from near and from anywhere: bags `bags/PLACE`, `field.toml` and `priors-red1.json` in `folder`.
+///
+/// Each bag runs twice in a row. The field is symmetric by half a turn, but for the landmarks. Shares are of all runs, at the last image.
+///
+/// # Errors
+/// Returns an error if a file is missing, or no image of a bag can be used.
+pub(crate) fn real_places(
+    folder: &Path,
+    places: &[String],
+    seeds: impl Iterator<Item = u64>,
+    params: &ColorSystemParams,
+) -> Result<ReportRun> {
+    let field = Field {
+        map: Arc::new(read_map(&folder.join("field.toml"))?),
+        bank: priors::bank(&priors::read(&folder.join("priors-red1.json"))?, params)?,
+        params: ColorSystemParams { start_uncertainty: NEAR, ..params.clone() },
+    };
+    let seeds: Vec<u64> = seeds.collect();
+    let mut metrics = vec![Metric::new("n_places", places.len() as f64, "")];
+    for (name, start) in [("near", None), ("anywhere", Some(StartPose::Anywhere))] {
+        let runs: Vec<(&String, u64)> =
+            places.iter().flat_map(|place| seeds.iter().map(move |seed| (place, *seed))).collect();
+        let outcomes = runs.par_iter().map(|(place, seed)| {
+            let records = twice(folder.join("bags").join(place).as_path()).context(place.to_string())?;
+            field.localize(&records, start, *seed).context(place.to_string())
+        });
+        metrics.extend(summary(name, &outcomes.collect::<Result<Vec<_>>>()?));
+    }
+    Ok(ReportRun { metrics, ..ReportRun::default() })
+}
+
+struct Field {
+    map: Arc<ColorMap>,
+    bank: LightingFilterBank,
+    params: ColorSystemParams,
+}
+
+/// A run at a place.
+struct Outcome {
+    is_right: bool,
+    /// Right after half a turn of the field.
+    is_mirrored: bool,
+    n_false_tracking_frames: usize,
+}
+
+impl Field {
+    fn localize(&self, records: &[Record], start: Option<StartPose>, seed: u64) -> Result<Outcome> {
+        let setup = ColorRunSetup { start, ..ColorRunSetup::new(&self.map, &self.bank, &self.params, seed) };
+        let run = run(records, setup, |_| {})?;
+        let samples = run.samples();
+        let (_, last) = samples.last().context("the bag has no true pose at its last image")?;
+        let is_false = samples
+            .iter()
+            .filter(|(frame, _)| frame.status == LocalizationStatus::Tracking)
+            .filter(|(_, at)| !is_right(at));
+        let half_a_turn = Pose2::new(0.0, 0.0, PI);
+        let mirrored = PoseWithTruth { truth: half_a_turn.compose(&last.truth), ..*last };
+        Ok(Outcome {
+            is_right: is_right(last),
+            is_mirrored: is_right(&mirrored),
+            n_false_tracking_frames: is_false.count(),
+        })
+    }
+}
+
+fn is_right(sample: &PoseWithTruth) -> bool {
+    let error = sample.error();
+    error.xy().norm() <= MAX_POSITION_ERROR && error.z.abs() <= MAX_HEADING_ERROR
+}
+
+fn summary(start: &str, outcomes: &[Outcome]) -> Vec<Metric> {
+    let n = outcomes.len() as f64;
+    let share =
+        |holds: &dyn Fn(&Outcome) -> bool| outcomes.iter().filter(|one| holds(one)).count() as f64 / n;
+    let most = outcomes.iter().map(|one| one.n_false_tracking_frames).max().unwrap_or(0);
+    vec![
+        Metric::new(format!("{start}_n_runs"), n, ""),
+        Metric::new(format!("{start}_right_share"), share(&|one| one.is_right), ""),
+        Metric::new(
+            format!("{start}_right_share_modulo_symmetry"),
+            share(&|one| one.is_right || one.is_mirrored),
+            "",
+        ),
+        Metric::new(format!("{start}_n_false_tracking_frames_worst"), most as f64, ""),
+    ]
+}
+
+/// The records of a bag, and again after them.
+fn twice(bag: &Path) -> Result<Vec<Record>> {
+    let (mut records, _) = wayfix_sensor_log::open(bag, &LogOpenOptions::default())?.read_all();
+    let images: Vec<Stamp> = records
+        .iter()
+        .filter(|record| matches!(record.data, RecordData::Image(_)))
+        .map(|record| record.stamp)
+        .collect();
+    let [first, second, .., last] = images[..] else { anyhow::bail!("fewer than three images") };
+    let nanoseconds = |stamp: Stamp| stamp.nanoseconds();
+    ensure!(first < second && second < last, "the images are not in order");
+    let period = nanoseconds(last) - nanoseconds(first) + nanoseconds(second) - nanoseconds(first);
+    let later = |record: &Record| Record {
+        stamp: Stamp::from_nanoseconds(nanoseconds(record.stamp) + period),
+        ..record.clone()
+    };
+    records.extend(records.iter().map(later).collect::<Vec<_>>());
+    records.sort_by_key(|record| record.stamp);
+    Ok(records)
+}
