@@ -1,4 +1,8 @@
-"""Runs each system on logs of 10 minutes, 1 hour and 8 hours, and prints time, memory and output as a table."""
+"""Runs each system on logs of 10 minutes, 1 hour and 8 hours, prints time, memory and output, and writes them into docs/performance.md.
+
+    cargo build --release -p wayfix
+    python3 tests/long_runs/measure.py target/release/wayfix      # PyPI mcap, mcap-protobuf-support
+"""
 
 import argparse
 import os
@@ -11,7 +15,11 @@ from pathlib import Path
 import long_log
 
 HOURS = ("10 min", 1 / 6), ("1 h", 1.0), ("8 h", 8.0)
-FIXTURES = Path(__file__).resolve().parents[2] / "fixtures"
+ROOT = Path(__file__).resolve().parents[2]
+FIXTURES = ROOT / "fixtures"
+PAGE = ROOT / "docs" / "performance.md"
+INIT = (FIXTURES / "film_head.txt").read_text().split()[0]
+BEGIN, END = "<!-- long runs -->\n", "<!-- end long runs -->"
 # Name, and stored log, options and hours at most: images take long.
 RUNS = {
     "slam, points": ("loop_known", ["slam"], 8),
@@ -19,7 +27,7 @@ RUNS = {
     "lines": ("office_laser", ["lines"], 8),
     "cml": ("store_area", ["cml"], 8),
     "color": ("color_bright", ["color", "--map", str(FIXTURES / "four-legged-field.toml")], 1 / 6),
-    "track": ("film_head", ["track"], 1),
+    "track": ("film_head", ["track", "--init", INIT], 1 / 6),
 }
 MEGABYTE = 1e6
 
@@ -41,13 +49,12 @@ def run(program, options, log, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="the program wayfix")
-    parser.add_argument("--only", default="", help="runs with this in their name")
+    parser.add_argument("--only", default="", help="runs with this in their name; the page stays as it is")
     parser.add_argument("--hours", type=float, default=8, help="the longest log")
     arguments = parser.parse_args()
-    print("| run | log | MB | CPU time | peak memory, MB | output, MB |")
-    print("| --- | --- | ---: | ---: | ---: | ---: |", flush=True)
+    rows = ["| run | log | MB | CPU time | peak memory, MB | output, MB |", "| --- | --- | ---: | ---: | ---: | ---: |"]
     for name, (stored, options, most) in RUNS.items():
         for length, hours in HOURS:
             if arguments.only not in name or hours > min(most, arguments.hours):
@@ -57,7 +64,11 @@ def main():
                 long_log.write(FIXTURES / f"{stored}.mcap", log, 3600 * hours)
                 seconds, memory, output = run(arguments.program, options, log, out)
                 size = log.stat().st_size / MEGABYTE
-            print(f"| {name} | {length} | {size:.0f} | {seconds:.0f} s | {memory:.0f} | {output:.0f} |", flush=True)
+            rows.append(f"| {name} | {length} | {size:.0f} | {seconds:.0f} s | {memory:.0f} | {output:.0f} |")
+            print(rows[-1], flush=True)
+    if not arguments.only:
+        before, rest = PAGE.read_text().split(BEGIN)
+        PAGE.write_text(before + BEGIN + "\n".join(rows) + "\n" + END + rest.split(END)[1])
 
 
 if __name__ == "__main__":

@@ -113,6 +113,10 @@ impl<H> RelocalizationTest<H> {
     pub fn alternatives_mut(&mut self) -> &mut [AlternativeHypothesis<H>] {
         &mut self.alternatives
     }
+    /// Keeps the alternatives of which `is_kept` is true: one that has become the present hypothesis, or another alternative, is none.
+    pub fn retain(&mut self, mut is_kept: impl FnMut(&H) -> bool) {
+        self.alternatives.retain(|alternative| is_kept(&alternative.hypothesis));
+    }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
         let statistics = self.alternatives.iter().map(AlternativeHypothesis::statistic);

@@ -112,6 +112,13 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
                 alternative.hypothesis = seen;
             }
         }
+        let mut places: Vec<_> = belief.heaviest().cloned().into_iter().collect();
+        kidnap.alternatives.retain(|alternative| {
+            let Some(place) = alternative.heaviest() else { return true };
+            let is_kept = !places.iter().any(|other| is_same(other, place, params));
+            places.extend(is_kept.then(|| place.clone()));
+            is_kept
+        });
         kidnap.observe(of_present, independence);
         let is_recognized = of_present.is_some_and(|test| test.is_recognized);
         if !is_recognized && kidnap.unsearched >= radius {
@@ -165,10 +172,12 @@ fn is_new<D: ViewDescriptor, S: ReferenceSearch<D>>(
     params: &LocalizerParams,
 ) -> bool {
     let distance = (place.mean().translation - present.mean().translation).norm();
-    let agrees = |other: &Belief| {
-        let squared = other.heaviest().map(|other| separation_squared(other, place));
-        matches!(squared, Some(Ok(squared)) if squared < params.fusion.gate)
-    };
-    let alternatives = kidnap.alternatives.alternatives();
-    distance > map.scale().far_distance() && !alternatives.iter().any(|other| agrees(&other.hypothesis))
+    let mut others =
+        kidnap.alternatives.alternatives().iter().filter_map(|other| other.hypothesis.heaviest());
+    distance > map.scale().far_distance() && !others.any(|other| is_same(other, place, params))
+}
+
+/// Whether two hypotheses mean one place.
+fn is_same(one: &Gaussian<Pose2<f64>>, other: &Gaussian<Pose2<f64>>, params: &LocalizerParams) -> bool {
+    separation_squared(one, other).is_ok_and(|squared| squared < params.fusion.gate)
 }

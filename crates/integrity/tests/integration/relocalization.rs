@@ -182,6 +182,17 @@ fn unknown_start_is_decided_without_relocalization_too() {
 }
 
 #[test]
+fn alternatives_that_are_one_place_can_be_removed() {
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    let candidate =
+        |hypothesis| RelocalizationCandidate { hypothesis, prior: 0.1, log_likelihood_ratio: 0.0 };
+    relocalization.propose([candidate(1), candidate(2), candidate(3)]).unwrap();
+    relocalization.retain(|hypothesis| *hypothesis != 2);
+    let left: Vec<i32> = relocalization.alternatives().iter().map(|one| one.hypothesis).collect();
+    assert_eq!(left, [1, 3]);
+}
+
+#[test]
 fn invalid_numbers_change_nothing() {
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
     relocalization
