@@ -52,7 +52,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="the program wayfix")
     parser.add_argument("--only", default="", help="runs with this in their name; the page stays as it is")
-    parser.add_argument("--hours", type=float, default=8, help="the longest log")
+    parser.add_argument("--hours", type=float, default=8, help="the longest log; below 8 the page stays as it is")
     arguments = parser.parse_args()
     rows = ["| run | log | MB | CPU time | peak memory, MB | output, MB |", "| --- | --- | ---: | ---: | ---: | ---: |"]
     for name, (stored, options, most) in RUNS.items():
@@ -66,7 +66,7 @@ def main():
                 size = log.stat().st_size / MEGABYTE
             rows.append(f"| {name} | {length} | {size:.0f} | {seconds:.0f} s | {memory:.0f} | {output:.0f} |")
             print(rows[-1], flush=True)
-    if not arguments.only:
+    if not arguments.only and arguments.hours >= 8:
         before, rest = PAGE.read_text().split(BEGIN)
         PAGE.write_text(before + BEGIN + "\n".join(rows) + "\n" + END + rest.split(END)[1])
 

@@ -38,12 +38,14 @@ fn refused(package: &Value, allowed: &[String]) -> Option<String> {
     (!is_fine).then(|| format!("    {}: {license:?}", package["name"].as_str().unwrap_or_default()))
 }
 
-/// The package if it comes from a repository, and the dependencies of one of ours that have any version.
+const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
+
+/// The package if it is not from crates.io, and the dependencies of one of ours that have any version.
 fn unknown_source(package: &Value) -> Vec<String> {
     let name = package["name"].as_str().unwrap_or_default();
     match package["source"].as_str() {
-        Some(source) if source.starts_with("git+") => vec![format!("    {name}: from a repository")],
-        Some(_) => Vec::new(),
+        Some(CRATES_IO) => Vec::new(),
+        Some(source) => vec![format!("    {name}: from {source}")],
         None => {
             let dependencies = package["dependencies"].as_array().into_iter().flatten();
             // A path in the workspace needs no version.
@@ -109,7 +111,7 @@ mod tests {
     fn a_repository_and_any_version_are_refused() {
         let package =
             serde_json::json!({"name": "a", "source": "git+https://example.org/a", "dependencies": []});
-        assert_eq!(unknown_source(&package), ["    a: from a repository"]);
+        assert_eq!(unknown_source(&package), ["    a: from git+https://example.org/a"]);
         let dependency =
             |req: &str, path: Option<&str>| serde_json::json!({"name": "b", "req": req, "path": path});
         let dependencies = [dependency("*", None), dependency("*", Some("b")), dependency("^1", None)];

@@ -68,7 +68,7 @@ enum Kind {
 /// $`p R_j = Λ_j`$ and replaces the present hypothesis when they reach 1.
 ///
 /// Otherwise the replaced hypothesis remains an alternative for a distance, with the odds that it has: $`p R = (p R_j)^{-1}`$.
-/// An alternative of a search is removed when its odds have fallen by the factor $`p A`$, the odds of a decision.
+/// An alternative of a search or of an unknown start is removed when its odds have fallen by the factor $`p A`$, the odds of a decision.
 ///
 /// ```
 /// use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest, RelocalizationParams};
@@ -113,9 +113,21 @@ impl<H> RelocalizationTest<H> {
     pub fn alternatives_mut(&mut self) -> &mut [AlternativeHypothesis<H>] {
         &mut self.alternatives
     }
-    /// Keeps the alternatives of which `is_kept` is true: one that has become the present hypothesis, or another alternative, is none.
-    pub fn retain(&mut self, mut is_kept: impl FnMut(&H) -> bool) {
-        self.alternatives.retain(|alternative| is_kept(&alternative.hypothesis));
+    /// Removes each alternative that has become the same as the present hypothesis, or as an alternative with a larger statistic.
+    pub fn remove_duplicates(&mut self, present: &H, is_same: impl Fn(&H, &H) -> bool) {
+        let mut by_statistic: Vec<usize> = (0..self.alternatives.len()).collect();
+        let statistic = |at: &usize| self.alternatives[*at].statistic;
+        by_statistic.sort_by(|a, b| statistic(b).total_cmp(&statistic(a)));
+        let mut kept: Vec<usize> = Vec::new();
+        for at in by_statistic {
+            let hypothesis = &self.alternatives[at].hypothesis;
+            let others = kept.iter().map(|other| &self.alternatives[*other].hypothesis);
+            if !others.chain([present]).any(|other| is_same(other, hypothesis)) {
+                kept.push(at);
+            }
+        }
+        let mut at = 0..;
+        self.alternatives.retain(|_| at.next().is_some_and(|at| kept.contains(&at)));
     }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
@@ -248,7 +260,7 @@ impl<H> RelocalizationTest<H> {
         });
     }
 
-    /// The factor at which an even alternative would be decided, inverted; that of the default parameters if relocalization is off.
+    /// $`1/(pA)`$, the inverse of the odds of a decision; that of the default parameters if relocalization is off.
     fn removal_factor(&self) -> f64 {
         let params = if self.params.is_off() { RelocalizationParams::default() } else { self.params };
         1.0 / (params.prior() * params.threshold())

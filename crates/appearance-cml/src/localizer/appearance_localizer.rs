@@ -176,7 +176,8 @@ where
     pub fn predict_unknown(&mut self, covariance: &Matrix3<f64>) -> Result<(), AppearanceMapError> {
         let unknown = Motion { increment: Pose2::identity(), covariance: *covariance, has_gap: true };
         let motion = self.motion.then(&unknown)?;
-        let (least, rounding) = (covariance.symmetric_eigenvalues().min(), f64::EPSILON * covariance.trace());
+        let (least, rounding) =
+            (covariance.symmetric_eigenvalues().min(), 16.0 * f64::EPSILON * covariance.trace());
         let what = "eigenvalue of the covariance of an unknown motion";
         crate::check::within(what, least, least >= -rounding, "not negative")?;
         self.belief = self.belief.moved(&unknown)?;

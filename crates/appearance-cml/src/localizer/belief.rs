@@ -69,7 +69,8 @@ impl Belief {
 
     /// Fused with the view and all other sources, simplified, and normalized at the end. [Gross et al. 2005, Eqs. 2–8]
     ///
-    /// The uniform component has at least the prior probability of a kidnapping, so that a source can contradict the prediction; not if relocalization is off.
+    /// With weights by evidence and relocalization, the uniform component has at least the prior probability of a kidnapping, so that a source can
+    /// contradict the prediction.
     pub(super) fn fused(
         &self,
         view: Option<&GaussianMixtureLikelihood>,
@@ -78,8 +79,8 @@ impl Belief {
         params: &LocalizerParams,
     ) -> Result<Self, AppearanceMapError> {
         let is_evidence = params.fusion.mixture_weighting == MixtureWeighting::Evidence;
-        let is_moved = is_evidence && !params.relocalization.is_off();
-        let prior = if is_moved { params.relocalization.probability(1.0) } else { 0.0 };
+        let can_be_moved = is_evidence && !params.relocalization.is_off();
+        let prior = if can_be_moved { params.relocalization.probability(1.0) } else { 0.0 };
         let mut uniform =
             UniformComponent { weight: self.uniform.max(prior), volume: area * std::f64::consts::TAU };
         let mut fused = self.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();

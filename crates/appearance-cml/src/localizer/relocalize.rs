@@ -112,12 +112,8 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
                 alternative.hypothesis = seen;
             }
         }
-        let mut places: Vec<_> = belief.heaviest().cloned().into_iter().collect();
-        kidnap.alternatives.retain(|alternative| {
-            let Some(place) = alternative.heaviest() else { return true };
-            let is_kept = !places.iter().any(|other| is_same(other, place, params));
-            places.extend(is_kept.then(|| place.clone()));
-            is_kept
+        kidnap.alternatives.remove_duplicates(belief, |one, other| {
+            one.heaviest().zip(other.heaviest()).is_some_and(|(one, other)| is_same(one, other, params))
         });
         kidnap.observe(of_present, independence);
         let is_recognized = of_present.is_some_and(|test| test.is_recognized);

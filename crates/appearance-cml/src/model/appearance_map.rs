@@ -44,7 +44,7 @@ pub struct AppearanceMap<D, S = LinearSearch<D>> {
     descriptor: PhantomData<fn() -> D>,
 }
 
-/// m². Wider than any position of an external sensor is uncertain.
+/// The area that an empty map is taken to cover, m²: much more than an external position is uncertain by.
 const UNKNOWN_AREA: f64 = 1e6;
 
 impl<D: ViewDescriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D, S> {
@@ -133,7 +133,7 @@ impl<D: ViewDescriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.scale.to_meters(self.match_limit(params))
     }
 
-    /// The area with references, m²; at least 1. That of an empty map is not known: a square kilometre.
+    /// The area with references, m²; at least 1. An empty map counts as a square kilometre, since its extent is unknown.
     pub fn area(&self) -> f64 {
         if self.is_empty() { UNKNOWN_AREA } else { self.grid.area() }
     }

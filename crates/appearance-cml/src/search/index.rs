@@ -48,7 +48,7 @@ pub struct AppearanceIndex<D: LowerBoundedDistance> {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchStatistics {
-    /// What the table let through, for a bound by their descriptors.
+    /// References that the table let through; each is then bounded by its descriptor.
     pub bounded: usize,
     /// Compared: what the bound let through.
     pub compared: usize,

@@ -74,7 +74,7 @@ pub struct LocalizerParams {
 )]
 pub struct GlobalSearchParams {
     /// Number of frames that are kept for a search. The robot is searched for after 1, 2, 4, … frames; up to this number a search replaces
-    /// the place, later it proposes others. Default 16: at ten images a second, what a robot sees while it turns by half a circle.
+    /// the place, later it proposes others. Default 16: at ten images a second, what a robot sees while it turns by a quarter of a circle.
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad, or for each peak of the likelihood near a known start; 0 never searches. Default 1.
     pub samples_per_place: f64,
@@ -83,8 +83,8 @@ pub struct GlobalSearchParams {
     /// Number of moves of each in the first round; it is doubled in each of the next, which take half the time of the one before. Default 10,
     /// chosen.
     pub n_first_round_moves: u32,
-    /// Time between searches after the start, s. Default 3: a robot that was moved is found within seconds, and a search of a field of 5 m × 4 m,
-    /// one to two seconds on two cores, leaves time for ten images a second.
+    /// Time between searches after the start, s. Default 3: a robot that was moved is found within seconds. A search of a field of 5 m × 4 m
+    /// takes about as long on two cores.
     pub search_interval: f64,
 }
 

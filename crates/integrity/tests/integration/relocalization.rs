@@ -182,14 +182,18 @@ fn unknown_start_is_decided_without_relocalization_too() {
 }
 
 #[test]
-fn alternatives_that_are_one_place_can_be_removed() {
+fn the_better_of_two_alternatives_at_one_place_stays() {
     let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
-    let candidate =
-        |hypothesis| RelocalizationCandidate { hypothesis, prior: 0.1, log_likelihood_ratio: 0.0 };
-    relocalization.propose([candidate(1), candidate(2), candidate(3)]).unwrap();
-    relocalization.retain(|hypothesis| *hypothesis != 2);
+    let candidate = |(hypothesis, log_likelihood_ratio)| RelocalizationCandidate {
+        hypothesis,
+        prior: 0.1,
+        log_likelihood_ratio,
+    };
+    relocalization.propose([(10, 0.0), (20, 0.0), (11, 2.0), (1, 3.0)].map(candidate)).unwrap();
+    // Within 1 of the present place, 0, or of one another.
+    relocalization.remove_duplicates(&0, |one, other| i32::abs(one - other) <= 1);
     let left: Vec<i32> = relocalization.alternatives().iter().map(|one| one.hypothesis).collect();
-    assert_eq!(left, [1, 3]);
+    assert_eq!(left, [20, 11]);
 }
 
 #[test]

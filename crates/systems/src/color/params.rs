@@ -41,7 +41,7 @@ impl ColorSystemParams {
             .map_or(ImageLikelihoodChoice::Pixels(self.localizer.pixels), ImageLikelihoodChoice::Features)
     }
 
-    /// Sets the method as published. Odometry, camera, and the variances and the drift of the light stay: they describe the robot and the hall.
+    /// Sets the method as published, without blobs. Odometry, camera, and the variances and the drift of the light stay: they describe the robot and the hall.
     pub fn set_published(&mut self) {
         self.unseen_colors = UnseenColorRule::Regress;
         self.feature_likelihood = None;

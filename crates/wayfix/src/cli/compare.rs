@@ -61,7 +61,8 @@ fn read(path: &Path) -> Result<FullReport> {
     let mut report: FullReport =
         serde_json::from_slice(&text).with_context(|| format!("{} is no report", file.display()))?;
     // Only a report of one run has its pictures as files.
-    if let [ReportSuite { runs, .. }] = &mut report.suites[..]
+    if file.ends_with("report.json")
+        && let [ReportSuite { runs, .. }] = &mut report.suites[..]
         && let [run] = &mut runs[..]
     {
         for (number, figure) in run.figures.iter_mut().enumerate() {
@@ -111,7 +112,8 @@ fn compared(a: &FullReport, b: &FullReport, names: &[String; 2], all: bool) -> F
             };
             Some(ReportRun { metrics, notes: notes.into_iter().collect(), ..kept })
         });
-        let runs: Vec<ReportRun> = runs.filter(|run| !run.metrics.is_empty()).collect();
+        let runs: Vec<ReportRun> =
+            runs.filter(|run| !run.metrics.is_empty() || !run.figures.is_empty()).collect();
         (!runs.is_empty()).then(|| ReportSuite { name: suite.name.clone(), runs })
     };
     FullReport { suites: b.suites.iter().filter_map(suite).collect(), ..b.clone() }

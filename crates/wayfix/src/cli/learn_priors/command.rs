@@ -152,8 +152,8 @@ impl GroupedImages<'_> {
             let (k, rng) = (arguments.lights, &mut ChaCha8Rng::seed_from_u64(arguments.seed));
             let restarts = PriorLearningParams::default().n_restarts;
             ensure!(
-                venues.len() >= k,
-                "--lights {k}: {} venue(s) cannot be split into {k} kinds of light; --groups names venues",
+                (1..=venues.len()).contains(&k),
+                "--lights {k}: from 1 to the number of venues, {}; --groups names venues",
                 venues.len()
             );
             let lights = split_by_brightness(venues, n_colors, k, restarts, rng)?;

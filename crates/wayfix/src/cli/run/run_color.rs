@@ -69,7 +69,7 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     start: Option<StartArgument>,
     /// The localizer as published by Schulz & Fox, without the additions: no search, no relocalization, no occlusion, no shade. It replaces `[localizer]` of --params, but
-    /// for odometry and camera; variances and drift of the light stay.
+    /// for odometry and camera, and `unseen_colors`, and removes `[feature_likelihood]`; variances and drift of the light stay.
     #[arg(long)]
     as_published: bool,
     #[command(flatten)]
