@@ -113,9 +113,12 @@ impl<H> RelocalizationTest<H> {
     pub fn alternatives_mut(&mut self) -> &mut [AlternativeHypothesis<H>] {
         &mut self.alternatives
     }
-    /// Removes each alternative that has become the same as the present hypothesis, or as an alternative with a larger statistic.
+    /// Removes each alternative that has become the same as the present hypothesis, or as an alternative with a larger statistic. The previous hypothesis
+    /// stays for its distance.
     pub fn remove_duplicates(&mut self, present: &H, is_same: impl Fn(&H, &H) -> bool) {
-        let mut by_statistic: Vec<usize> = (0..self.alternatives.len()).collect();
+        let is_previous = |at: &usize| self.alternatives[*at].is_previous();
+        let mut by_statistic: Vec<usize> =
+            (0..self.alternatives.len()).filter(|at| !is_previous(at)).collect();
         let statistic = |at: &usize| self.alternatives[*at].statistic;
         by_statistic.sort_by(|a, b| statistic(b).total_cmp(&statistic(a)));
         let mut kept: Vec<usize> = Vec::new();
@@ -127,7 +130,10 @@ impl<H> RelocalizationTest<H> {
             }
         }
         let mut at = 0..;
-        self.alternatives.retain(|_| at.next().is_some_and(|at| kept.contains(&at)));
+        self.alternatives.retain(|alternative| {
+            let is_kept = at.next().is_some_and(|at| kept.contains(&at));
+            is_kept || alternative.is_previous()
+        });
     }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
