@@ -40,6 +40,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 23] = [
             "sensor-log",
             "slam-ekf",
             "slam-smoother",
+            "smoother",
             "system-core",
             "table-log",
         ],

@@ -1,10 +1,14 @@
 /// Figures by the end of their names, or by the beginning where it ends in `_`; the first match counts.
-const MEANINGS: [(&str, &str); 117] = [
+const MEANINGS: [(&str, &str); 118] = [
     (
         "right_share_modulo_symmetry",
         "share of the runs that end at the true place, or half a turn of the field from it",
     ),
     ("right_share", "share of the runs that end at the true place"),
+    (
+        "n_false_tracking_frames_modulo_symmetry_worst",
+        "tracked frames over 0.25 m or 6° from the truth and from half a turn of it, in the worst run",
+    ),
     ("n_false_tracking_frames_worst", "tracked frames over 0.25 m or 6° from the truth, in the worst run"),
     ("n_false_tracking_frames", "tracked frames over 0.25 m or 6° from the truth"),
     ("n_runs", "runs that are summarized"),

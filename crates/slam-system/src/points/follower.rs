@@ -14,14 +14,14 @@ use wayfix_slam_smoother::{
 use wayfix_system_core::{MOST_ESTIMATES, Stopwatch};
 
 use super::{PointSensor, PointSlamParams};
-use crate::slam::{AssociationRule, SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried};
+use crate::slam::{
+    AssociationRule, MAX_BATCH_POSES, SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried,
+};
 
 /// Poses older than this are final, s.
 const LAG: f64 = 60.0;
 /// Time between two solutions of the window, s.
 const PERIOD: f64 = 1.0;
-/// Runs with more poses have no batch to compare with.
-const MAX_BATCH_POSES: usize = 20_000;
 
 /// The smoother of points behind EKF-SLAM: motions and first pairings come from the filter.
 pub(super) struct PointFollower {
@@ -155,7 +155,13 @@ impl PointFollower {
 }
 
 impl SlamFollower<PointSensor> for PointFollower {
-    fn predicted(&mut self, before: &PoseWithRangeScale, after: &PoseWithRangeScale, noise: &Matrix4<f64>) {
+    fn predicted(
+        &mut self,
+        before: &PoseWithRangeScale,
+        after: &PoseWithRangeScale,
+        _: &Matrix4<f64>,
+        noise: &Matrix4<f64>,
+    ) {
         let step = before.pose.inverse().compose(&after.pose);
         self.covariance = carried(&self.covariance, &step) + noise.fixed_view::<3, 3>(0, 0);
         self.motion = self.motion.compose(&step);

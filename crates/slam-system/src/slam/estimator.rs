@@ -102,7 +102,8 @@ where
         let before = self.filter.robot().clone();
         self.filter.predict(motion, control).map_err(|error| error.to_string())?;
         if let Some(follower) = &mut self.follower {
-            follower.predicted(&before, self.filter.robot(), &motion.noise(&before, control));
+            let jacobian = motion.jacobian(&before, control);
+            follower.predicted(&before, self.filter.robot(), &jacobian, &motion.noise(&before, control));
         }
         Ok(())
     }

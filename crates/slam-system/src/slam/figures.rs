@@ -50,7 +50,7 @@ where
         let why = if is_smoothed {
             "the smoother's estimates are the result"
         } else {
-            "`wayfix run slam` makes one for landmarks that are points, if it begins without a map"
+            "`wayfix run slam` makes one of points or walls, if it begins without a map"
         };
         summary.notes.push(format!("No batch to compare with: {why}."));
     }

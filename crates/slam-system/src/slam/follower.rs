@@ -11,13 +11,24 @@ use wayfix_slam_smoother::SlamSmootherError;
 
 use super::StampedEstimate;
 
+/// Runs with more poses have no batch to compare with.
+pub(crate) const MAX_BATCH_POSES: usize = 20_000;
+
 /// A second estimator that takes the motions of EKF-SLAM, and its pairings at first.
 pub(crate) trait SlamFollower<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// The filter has moved the robot, with noise in the tangent space at the end.
-    fn predicted(&mut self, before: &M::Robot, after: &M::Robot, noise: &TangentMatrix<M::Robot>);
+    /// The filter has moved the robot, with Jacobian, and noise in the tangent space at the end.
+    fn predicted(
+        &mut self,
+        before: &M::Robot,
+        after: &M::Robot,
+        jacobian: &TangentMatrix<M::Robot>,
+        noise: &TangentMatrix<M::Robot>,
+    );
+    /// The filter has taken a measurement of the heading drift of a robot that has one, rad/m.
+    fn heading_drift_measured(&mut self, _measured: f64, _variance: f64) {}
     /// The filter has taken a scan.
     fn updated(
         &mut self,
@@ -43,7 +54,7 @@ where
 pub struct SmoothedRun {
     /// One for each estimate of the filter, at the same stamps, or a sample of them.
     pub estimates: Decimated<StampedEstimate>,
-    /// Landmarks by identity.
+    /// Points by identity, of a window.
     pub landmarks: BTreeMap<u32, Vector2<f64>>,
     /// The least squares problem of a batch and its solution, if requested: [`PointSmoother::export`](wayfix_slam_smoother::points::PointSmoother::export).
     pub graph: Option<Result<String, SlamSmootherError>>,

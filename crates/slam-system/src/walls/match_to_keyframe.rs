@@ -68,6 +68,9 @@ fn correct_drift((change, variance): (f64, f64), estimator: &mut Walls) -> f64 {
         let jacobian = DMatrix::from_row_slice(1, 4, &[0.0, 0.0, 0.0, 1.0]);
         let covariance = DMatrix::from_element(1, 1, innovation.covariance[(0, 0)]);
         estimator.record_robot(&jacobian, &covariance);
+        if let Some(follower) = &mut estimator.follower {
+            follower.heading_drift_measured(measured.x, variance);
+        }
     }
     estimator.filter.robot().heading_drift - before
 }

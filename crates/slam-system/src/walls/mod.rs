@@ -1,5 +1,6 @@
 //! EKF-SLAM on laser scans: walls in every scan → map of walls, path, figures, pictures.
 
+mod batch;
 mod drawing;
 mod figures;
 mod front_end;

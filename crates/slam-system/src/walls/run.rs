@@ -10,7 +10,7 @@ use wayfix_system_core::{
     warn_of_reference, warn_of_start, without_odometry_delay,
 };
 
-use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, truth};
+use super::{SavedWallMap, WallSlamFrontEnd, WallSlamParams, WallSystem, batch::WallBatch, truth};
 use crate::slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose};
 
 /// The result of EKF-SLAM with walls on a log of scans.
@@ -75,6 +75,10 @@ pub fn run_streamed<R: Borrow<Record>>(
         truth::landmark(&TrueWall { id: 0, start: start.into(), end: end.into() })
     };
     system.add_given_anchors(&params.anchors, None, between)?;
+    if !track.is_empty() {
+        // Else there is nothing to compare a batch with.
+        system.estimator.follower = Some(Box::new(WallBatch::new(&system.estimator.filter)));
+    }
     drive_through(system, track, true_walls, records, observe)
 }
 

@@ -156,6 +156,9 @@ fn positions_and_anchors_correct_walls() {
     let mut run = walls::run(&records, &params, |_| {}).expect("a usable log");
     assert_eq!(run.events().get("measurement_gated"), 1, "the jump of 100 m");
     assert!(run.events().get("measurement_accepted") + 3 >= n_fixes, "{n_fixes}");
+    let summary = walls::summarize(&mut run);
+    let figure = |name: &str| summary.metrics.iter().find(|metric| metric.name == name).expect(name).value;
+    assert!(figure("batch_ate_rmse_m") < figure("ate_rmse_m")); // the batch has all fixes for every pose
 
     let mut params = WallSlamParams { expected_walls: true, ..WallSlamParams::default() };
     params.filter.anchor_first = 1;

@@ -7,4 +7,5 @@ mod overview;
 mod point_params;
 mod slam_system;
 mod smoother;
+mod wall_batch;
 mod walls_resume;
