@@ -13,7 +13,7 @@ fn office() -> Vec<Record> {
 }
 
 fn figure(summary: &ReportRun, name: &str) -> f64 {
-    summary.metrics.iter().find(|metric| metric.name == name).unwrap_or_else(|| panic!("no {name}")).value
+    summary.metrics.iter().find(|metric| metric.name == name).unwrap().value
 }
 
 /// Each pose of a batch has all measurements, those of the filter only the earlier ones.

@@ -125,7 +125,7 @@ impl WallBatch {
         sightings: &[(usize, WallMeasurement)],
     ) -> Result<(), SmootherError> {
         let Some(wall) = self.walls.get(&id) else { return Ok(()) };
-        let variable = graph.add_variable(wall.clone());
+        let variable = graph.add_variable(*wall);
         if self.anchors.contains(&id) {
             graph.fix(variable)?;
         }
@@ -133,7 +133,7 @@ impl WallBatch {
             let expected = self.sensor.expected(&self.poses[*keyframe], wall);
             let noise = self.sensor.noise(measurement);
             let noise = self.sensor.noise_at_expected(&expected, measurement, &noise);
-            let residual = SeenWall { sensor: self.sensor, measurement: measurement.clone() };
+            let residual = SeenWall { sensor: self.sensor, measurement: *measurement };
             graph.add(residual, (poses[*keyframe], variable), information(&noise))?;
         }
         Ok(())
@@ -221,7 +221,7 @@ impl SlamFollower<WallModel> for WallBatch {
                 }
                 _ => continue,
             };
-            self.seen.entry(id).or_default().push((newest, measurement.clone()));
+            self.seen.entry(id).or_default().push((newest, *measurement));
         }
         for merge in &report.merges {
             let moved = self.seen.remove(&merge.removed).unwrap_or_default();
@@ -230,7 +230,7 @@ impl SlamFollower<WallModel> for WallBatch {
         self.seen.retain(|id, _| filter.contains(*id));
         for (id, wall) in filter.anchors() {
             self.anchors.insert(id);
-            self.walls.insert(id, wall.clone());
+            self.walls.insert(id, *wall);
         }
         for id in self.seen.keys() {
             if let Some(estimate) = filter.landmark(*id) {
