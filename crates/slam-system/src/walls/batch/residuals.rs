@@ -86,7 +86,7 @@ mod tests {
         let seen = sensor.expected(&robot, &wall);
         let other = WallMeasurement {
             line: WallLine::new(-seen.line.rho - 0.1, seen.line.alpha + std::f64::consts::PI + 0.05),
-            ..seen.clone()
+            ..seen
         };
         for measurement in [seen, other] {
             let residual = SeenWall { sensor, measurement };
