@@ -1,7 +1,7 @@
 use std::{collections::BTreeMap, time::Duration};
 
 use nalgebra::{Matrix3, Matrix4, Vector2};
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_estimation_traits::{LieGroup, Pose2, SensorModel};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkId, LandmarkModel, MapMeasurement, Observation, ObservationOutcome, PoseWithRangeScale,
@@ -186,7 +186,7 @@ impl SlamFollower<PointSensor> for PointFollower {
                 variance: nalgebra::Matrix1::new(sensor.variance),
             },
             MapMeasurement::Pose(sensor, measured) => {
-                PoseObservation::Pose { measured, covariance: sensor.covariance }
+                PoseObservation::Pose { measured, covariance: sensor.noise(&measured) }
             }
         };
         self.try_to(|follower| {

@@ -8,7 +8,7 @@ use std::{
 };
 
 use nalgebra::{Matrix1, Matrix3, Matrix4, SMatrix, Vector1, Vector3};
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_estimation_traits::{LieGroup, Pose2, SensorModel};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkId, LandmarkModel, MapMeasurement, MountedSensor, Observation, ObservationOutcome,
@@ -158,7 +158,7 @@ fn add_measured_pose(
         }
         MapMeasurement::Pose(sensor, measured) => {
             let carry = motion.adjoint();
-            let covariance = carry * sensor.covariance * carry.transpose();
+            let covariance = carry * sensor.noise(measured) * carry.transpose(); // in the body frame
             let before = measured.compose(&motion.inverse());
             graph.add(Prior::new(before), (pose,), information(&covariance))?;
         }

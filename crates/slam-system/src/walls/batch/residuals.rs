@@ -3,11 +3,11 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_slam_ekf::{LandmarkModel, MountedSensor, Wall, WallMeasurement, WallSensor};
 use wayfix_smoother::Residual;
 
-/// A motion of odometry with heading drift: $`r = \operatorname{Log}((x_i ∘ (m ⊞ b (κ - κ_0)))^{-1} x_j)`$. The variables are $`x_i`$, $`x_j`$
+/// A motion of odometry with heading drift: $`r = x_j ⊟ (x_i ∘ (m ⊞ b (κ - κ_0)))`$. The variables are $`x_i`$, $`x_j`$
 /// and $`κ`$.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DriftingMotion {
-    /// $`m`$, with the drift $`κ_0`$ taken out.
+    /// $`m`$, corrected for the drift $`κ_0`$.
     pub(super) motion: Pose2<f64>,
     /// $`κ_0`$, rad/m.
     pub(super) heading_drift: f64,
