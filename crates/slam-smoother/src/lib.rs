@@ -17,7 +17,7 @@ pub use error::SlamSmootherError;
 
 /// Kernel of measurements: 95 % of the efficiency of least squares when there are no outliers. [Holland and Welsch 1977] Its cost is that of Student's t with
 /// $`c^2 - 1`$ degrees of freedom, so that the noise has a likelihood. [Lange et al. 1989]
-const ROBUST: Kernel = Kernel::Cauchy { c: 2.385 };
+pub const ROBUST_KERNEL: Kernel = Kernel::Cauchy { c: 2.385 };
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.
 pub use nalgebra;

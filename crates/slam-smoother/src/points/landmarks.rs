@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 use wayfix_smoother::VariableId;
 
 use super::{MountedRangeBearing, PointSmoother, residuals::SamePoint, smoother::ONLINE};
-use crate::{ROBUST, SlamSmootherError};
+use crate::{ROBUST_KERNEL, SlamSmootherError};
 
 /// Two landmarks that are one are together to within this, m.
 const SAME: f64 = 1e-3;
@@ -87,7 +87,7 @@ impl PointSmoother {
             .collect();
         for (detection, pose, information) in detections {
             let added = self.graph.add(detection, (pose, to, self.scale), information)?;
-            self.graph.set_kernel(added, ROBUST)?;
+            self.graph.set_kernel(added, ROBUST_KERNEL)?;
         }
         Ok(())
     }

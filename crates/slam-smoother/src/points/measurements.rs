@@ -5,7 +5,7 @@ use wayfix_smoother::Prior;
 use super::{
     AntennaPosition, Heading, MountedRangeBearing, PointSmoother, PoseObservation, smoother::inverse,
 };
-use crate::{ROBUST, SlamSmootherError};
+use crate::{ROBUST_KERNEL, SlamSmootherError};
 
 /// A detection of a point whose landmark is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl PointSmoother {
         match self.graph.add(residual, (pose, id, self.scale), information) {
             Ok(added) => {
                 self.landmarks.insert(landmark, id);
-                Ok(self.graph.set_kernel(added, ROBUST)?)
+                Ok(self.graph.set_kernel(added, ROBUST_KERNEL)?)
             }
             Err(error) => {
                 if !self.landmarks.contains_key(&landmark) {
@@ -84,6 +84,6 @@ impl PointSmoother {
                 self.graph.add(Prior::new(back), (pose,), inverse(&covariance, name, index)?)?
             }
         };
-        Ok(self.graph.set_kernel(added, ROBUST)?)
+        Ok(self.graph.set_kernel(added, ROBUST_KERNEL)?)
     }
 }

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_smoother::{Residual, ResidualId, VariableId};
 
 use super::{MountedRangeBearing, PointSmoother};
-use crate::{ROBUST, SlamSmootherError};
+use crate::{ROBUST_KERNEL, SlamSmootherError};
 
 /// A landmark at its present place.
 struct Landmark {
@@ -49,7 +49,7 @@ impl PointSmoother {
                 self.graph.remove(*id)?;
                 let variables = (pose, landmarks[chosen].variable, self.scale);
                 let added = self.graph.add(*seen, variables, *information)?;
-                self.graph.set_kernel(added, ROBUST)?;
+                self.graph.set_kernel(added, ROBUST_KERNEL)?;
                 left.insert(landmarks[*landmark].variable.index());
                 n_changed += 1;
             }

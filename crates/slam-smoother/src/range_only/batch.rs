@@ -7,7 +7,7 @@ use wayfix_smoother::{Between, Graph, Params, ResidualId, Summary, VariableId};
 use super::{
     BeaconRange, Calibration, CalibrationPrior, RangeOnlyInput, RangeOnlyNoise, residuals::VectorPrior,
 };
-use crate::{ROBUST, SlamSmootherError};
+use crate::{ROBUST_KERNEL, SlamSmootherError};
 
 /// Relative decrease of the cost that ends an optimization for the likelihood: some thousand measurements cost about as much each as one.
 const LIKELIHOOD_DECREASE: f64 = 1e-5;
@@ -60,7 +60,7 @@ impl RangeGraph {
             };
             let residual = BeaconRange { range: measured.range };
             let id = graph.add(residual, (*pose, *beacon, calibration), noise.range_information())?;
-            graph.set_kernel(id, ROBUST)?;
+            graph.set_kernel(id, ROBUST_KERNEL)?;
             ranges.push(id);
         }
         Ok(Self { graph, noise, poses, beacons, calibration, motions, ranges })

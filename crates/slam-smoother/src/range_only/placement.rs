@@ -5,7 +5,7 @@ use super::{
     Calibration,
     residuals::{RangeFrom, VectorPrior},
 };
-use crate::ROBUST;
+use crate::ROBUST_KERNEL;
 
 /// Starts around the nearest pose: directions of the beacon.
 const N_STARTS: usize = 16;
@@ -94,7 +94,7 @@ fn minimum(
     for Sample { position, range } in samples.iter().copied() {
         let residual = RangeFrom { position, range };
         let id = graph.add(residual, (beacon, calibration), Matrix1::new(sigma.powi(-2))).ok()?;
-        graph.set_kernel(id, ROBUST).ok()?;
+        graph.set_kernel(id, ROBUST_KERNEL).ok()?;
     }
     let cost = graph.optimize(&Params::default()).ok()?.cost;
     let covariance = graph.marginals().and_then(|marginals| marginals.covariance(beacon)).ok();

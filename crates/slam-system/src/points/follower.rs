@@ -15,7 +15,8 @@ use wayfix_system_core::{MOST_ESTIMATES, Stopwatch};
 
 use super::{PointSensor, PointSlamParams};
 use crate::slam::{
-    AssociationRule, MAX_BATCH_POSES, SlamFollower, SmoothedRun, Smoothing, StampedEstimate, carried,
+    AssociationRule, MAX_BATCH_POSES, NO_BATCH, SlamFollower, SmoothedRun, Smoothing, StampedEstimate,
+    carried,
 };
 
 /// Poses older than this are final, s.
@@ -240,7 +241,10 @@ impl SlamFollower<PointSensor> for PointFollower {
             }
             Ok(())
         });
-        self.failure.clone().map_or(Ok(()), Err)?;
+        if let Some(reason) = &self.failure {
+            let what = if self.is_batch { NO_BATCH } else { "no smoothed estimates" };
+            return Err(format!("{what}: {reason}"));
+        }
         Ok(SmoothedRun {
             estimates: std::mem::replace(&mut self.estimates, Decimated::new(0)),
             landmarks: self.smoother.landmarks(),

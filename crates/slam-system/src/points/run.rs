@@ -16,7 +16,8 @@ use wayfix_system_core::{
 
 use super::{PointSlamFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::slam::{
-    AssociationRule, FIRST_ANCHOR, SlamRun, Smoothing, StampedEstimate, start_pose, warn_of_gross_errors,
+    AssociationRule, FIRST_ANCHOR, NO_BATCH, SlamRun, Smoothing, StampedEstimate, start_pose,
+    warn_of_gross_errors,
 };
 
 /// The result of EKF-SLAM with points on a log; the true map has the landmarks by identity.
@@ -78,7 +79,7 @@ pub fn run_streamed<R: Borrow<Record>>(
         // Else there is nothing to compare a batch with.
         if let Err(error) = system.follow(None) {
             ensure!(params.smoothing == Smoothing::Reference, error);
-            system.events().warn("smoother_failed", format!("no batch to compare with: {error}"));
+            system.events().warn("smoother_failed", format!("{NO_BATCH}: {error}"));
         }
     }
     drive_through(system, truth, overview, records, observe)

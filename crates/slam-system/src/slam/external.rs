@@ -43,7 +43,9 @@ where
             Ok(innovation) => {
                 self.record_robot(&innovation.jacobian, &innovation.covariance);
                 if let Some(follower) = &mut self.follower {
-                    follower.measured(&self.filter, measurement, motion);
+                    let moved = self.filter.robot().pose().compose(&motion);
+                    let measurement = measurement.with_motion_noise(&moved, &covariance);
+                    follower.measured(&self.filter, &measurement, motion);
                 }
                 self.events.count("measurement_accepted");
             }

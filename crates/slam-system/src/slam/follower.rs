@@ -14,6 +14,9 @@ use super::StampedEstimate;
 /// Runs with more poses have no batch to compare with.
 pub(crate) const MAX_BATCH_POSES: usize = 20_000;
 
+/// What a batch that failed says.
+pub(crate) const NO_BATCH: &str = "no batch to compare with";
+
 /// A second estimator that takes the motions of EKF-SLAM, and its pairings at first.
 pub(crate) trait SlamFollower<M: LandmarkModel>
 where
@@ -27,8 +30,8 @@ where
         jacobian: &TangentMatrix<M::Robot>,
         noise: &TangentMatrix<M::Robot>,
     );
-    /// The filter has taken a measurement of the heading drift of a robot that has one, rad/m.
-    fn heading_drift_measured(&mut self, _measured: f64, _variance: f64) {}
+    /// The filter has taken a measurement of the heading drift of a robot that has one, rad/m, and as much information of it, m²/rad².
+    fn heading_drift_measured(&mut self, _measured: f64, _information: f64) {}
     /// The filter has taken a scan.
     fn updated(
         &mut self,
@@ -36,7 +39,7 @@ where
         observations: &[Observation<M::Measurement>],
         report: &UpdateReport<M::Measurement>,
     );
-    /// The filter has taken a measurement of the pose that the robot has after a further motion.
+    /// The filter has taken a measurement of the pose that the robot has after a further motion, whose covariance is part of its noise.
     fn measured(&mut self, filter: &EkfSlam<M>, measurement: &MapMeasurement, motion: Pose2<f64>);
     /// The filter has an estimate at a stamp; computing time of the follower for it.
     fn estimated(&mut self, filter: &EkfSlam<M>, estimate: &StampedEstimate) -> Duration;

@@ -49,6 +49,14 @@ where
         estimator: &mut SlamEstimator<Self::Model>,
     ) -> Result<Option<MotionEstimate>, String>;
 
+    /// A measurement of the pose has corrected the filter, whose robot was at `before`.
+    fn corrected(
+        &mut self,
+        _before: &<Self::Model as LandmarkModel>::Robot,
+        _after: &<Self::Model as LandmarkModel>::Robot,
+    ) {
+    }
+
     /// The stamp up to which records changed the state, where `taken_until` is the stamp of the last record.
     fn settled_until(&self, taken_until: Stamp) -> Stamp {
         taken_until

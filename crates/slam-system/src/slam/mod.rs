@@ -24,7 +24,7 @@ pub(crate) use estimator::nis;
 pub use estimator::{SlamEstimator, StampedEstimate};
 pub use external::ExternalState;
 pub(crate) use figures::{path_metrics, summary, timings};
-pub(crate) use follower::{MAX_BATCH_POSES, SlamFollower, carried};
+pub(crate) use follower::{MAX_BATCH_POSES, NO_BATCH, SlamFollower, carried};
 pub use follower::{SmoothedRun, Smoothing};
 pub use front_end::{FrontEnd, FrontEndState, MotionEstimate};
 pub(crate) use parameter_numbers::{increment_numbers, number};

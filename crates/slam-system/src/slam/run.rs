@@ -93,7 +93,7 @@ where
                 self.smoothed = Some(smoothed);
             }
             Err(reason) => {
-                self.system.events().warn("smoother_failed", format!("no smoothed estimates: {reason}"));
+                self.system.events().warn("smoother_failed", reason);
             }
         }
     }

@@ -143,7 +143,10 @@ where
             return Ok(());
         };
         let (motion, covariance) = (motion.compose(rest), carried(&covariance, rest));
-        self.estimator.update_moved(measurement, motion, covariance, &mut self.heading_sign)
+        let before = self.estimator.filter.robot().clone();
+        self.estimator.update_moved(measurement, motion, covariance, &mut self.heading_sign)?;
+        self.front_end.corrected(&before, self.estimator.filter.robot());
+        Ok(())
     }
 
     /// All that is needed to continue from here.

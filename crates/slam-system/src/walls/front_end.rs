@@ -1,14 +1,13 @@
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Vector2};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2, wrap_angle};
 use wayfix_evaluation::plot::ScanSample;
-use wayfix_line_extract::{LineExtractor, WallSegment};
+use wayfix_line_extract::LineExtractor;
 use wayfix_scan_match::ScanMatcher;
 use wayfix_sensor_log::{LaserScan, LogError, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
-    EkfSlam, ExternalParams, MountedSensor, Observation, PoseWithHeadingDrift, SensorWithHeadingDrift,
-    WallMeasurement, WallSensor,
+    EkfSlam, ExternalParams, MountedSensor, PoseWithHeadingDrift, SensorWithHeadingDrift, WallSensor,
 };
 use wayfix_system_core::{
     EstimateWriter, EventCounts, IncrementPlausibilityCheck, Stopwatch, TurnHistory, check_velocity,
@@ -105,9 +104,6 @@ impl WallSystem {
     }
 }
 
-/// Half the width of a search band, standard deviations. [Andrade-Cetto 2005, Fig. 1]
-const BAND_SIGMAS: f64 = 2.0;
-
 /// The estimator of this front end.
 pub(super) type Walls = SlamEstimator<WallModel>;
 
@@ -169,6 +165,12 @@ impl FrontEnd for WallSlamFrontEnd {
         Ok(self.odometry.has_started().then_some((self.relative_motion.motion, covariance)))
     }
 
+    /// The motion since the keyframe has the corrected drift taken out.
+    fn corrected(&mut self, before: &PoseWithHeadingDrift, after: &PoseWithHeadingDrift) {
+        let drift_change = after.heading_drift - before.heading_drift;
+        self.relative_motion = self.relative_motion.with_drift_changed_by(drift_change);
+    }
+
     fn draw_map(
         filter: &EkfSlam<WallModel>,
         stamp: Stamp,
@@ -184,7 +186,7 @@ impl FrontEnd for WallSlamFrontEnd {
 
 impl WallSlamFrontEnd {
     /// Where the laser is on the robot.
-    fn mount(&self) -> Pose2<f64> {
+    pub(super) fn mount(&self) -> Pose2<f64> {
         self.params.mount()
     }
 
@@ -364,33 +366,5 @@ impl WallSlamFrontEnd {
         let (state, covariance) = estimator.predicted(&self.relative_motion, &self.relative_motion.motion);
         let covariance = covariance.fixed_view::<3, 3>(0, 0).into_owned();
         estimator.add_stamped_estimate(stamp, state.pose, covariance, nis);
-    }
-
-    /// The segments that are long enough to be walls, or lie in the search band of an expected wall, as the laser would see them from where the
-    /// model has it.
-    fn walls_among(
-        &self,
-        segments: &[WallSegment],
-        laser: &Pose2<f64>,
-        estimator: &mut Walls,
-    ) -> Vec<Observation<WallMeasurement>> {
-        let moved = self.mount().inverse().compose(laser);
-        let expected = self.params.expected_walls.then(|| estimator.filter.expected_landmarks());
-        let mut found = BTreeSet::new();
-        let mut observations = Vec::with_capacity(segments.len());
-        for segment in segments {
-            let seen = WallMeasurement::from(segment);
-            let measurement = if *laser == self.mount() { seen } else { seen.transformed(&moved) };
-            let wall = expected.as_ref().and_then(|expected| expected.find(&measurement, BAND_SIGMAS));
-            found.extend(wall);
-            if wall.is_some() || segment.length() >= self.params.min_wall_length {
-                observations.push(Observation { label: None, measurement });
-            }
-        }
-        if let Some(expected) = expected {
-            estimator.events.add("wall_expected", expected.len() as u64);
-            estimator.events.add("wall_in_search_band", found.len() as u64);
-        }
-        observations
     }
 }

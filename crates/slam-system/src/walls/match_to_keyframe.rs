@@ -1,9 +1,9 @@
 use nalgebra::{DMatrix, Vector1};
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_scan_match::{InitialGuess, ScanAlignment, ScanPointCloud};
-use wayfix_slam_ekf::HeadingDriftSensor;
+use wayfix_slam_ekf::{EkfSlam, HeadingDriftSensor};
 
-use super::front_end::{WallSlamFrontEnd, Walls};
+use super::front_end::{WallModel, WallSlamFrontEnd, Walls};
 
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
@@ -62,14 +62,16 @@ impl KeyframeMatch {
 
 /// Corrects the drift by a change and its variance. Returns the change that the filter made: none if it refuses the measurement.
 fn correct_drift((change, variance): (f64, f64), estimator: &mut Walls) -> f64 {
-    let before = estimator.filter.robot().heading_drift;
+    let variance_of = |filter: &EkfSlam<WallModel>| filter.robot_covariance().m44;
+    let (before, variance_before) = (estimator.filter.robot().heading_drift, variance_of(&estimator.filter));
     let measured = Vector1::new(before + change);
     if let Ok(innovation) = estimator.filter.update_robot(&HeadingDriftSensor(variance), &measured) {
         let jacobian = DMatrix::from_row_slice(1, 4, &[0.0, 0.0, 0.0, 1.0]);
         let covariance = DMatrix::from_element(1, 1, innovation.covariance[(0, 0)]);
         estimator.record_robot(&jacobian, &covariance);
         if let Some(follower) = &mut estimator.follower {
-            follower.heading_drift_measured(measured.x, variance);
+            let information = variance_of(&estimator.filter).recip() - variance_before.recip();
+            follower.heading_drift_measured(measured.x, information);
         }
     }
     estimator.filter.robot().heading_drift - before

@@ -104,6 +104,11 @@ impl RelativeMotion {
         Self { covariance: self.covariance * scale.max(1.0), ..self }
     }
 
+    /// The same once another sensor has changed the drift.
+    pub(super) fn with_drift_changed_by(self, drift_change: f64) -> Self {
+        Self { motion: self.motion.retract(&(self.drift_jacobian * drift_change)), ..self }
+    }
+
     /// The correction of the drift by a match of two scans, and its variance; `None` if the match gives no information.
     ///
     /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is the error of odometry without the drift, with covariance $`Q`$.

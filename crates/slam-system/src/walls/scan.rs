@@ -1,9 +1,14 @@
+use std::collections::BTreeSet;
+
 use nalgebra::{Isometry2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_line_extract::{LineExtraction, LineExtractionError, LineExtractor, Scan};
+use wayfix_line_extract::{LineExtraction, LineExtractionError, LineExtractor, Scan, WallSegment};
 use wayfix_scan_match::{ScanMatchError, ScanPointCloud};
 use wayfix_sensor_log::{LaserScan, Stamp};
+use wayfix_slam_ekf::{Observation, WallMeasurement};
 use wayfix_system_core::max_echo_range;
+
+use super::front_end::{WallSlamFrontEnd, Walls};
 
 /// A scan that waits for the odometry that leads up to it, and where the laser was.
 pub(super) struct WaitingScan {
@@ -65,5 +70,38 @@ impl PlacedScan {
         let scan = Scan { angle_min, angle_increment, ranges, max_range: max_echo_range(&self.scan) };
         let step = self.beam_step.map(|step| Isometry2::new(step.translation, step.heading()));
         extractor.extract_deskewed(&scan, step.as_ref())
+    }
+}
+
+/// Half the width of a search band, standard deviations. [Andrade-Cetto 2005, Fig. 1]
+const BAND_SIGMAS: f64 = 2.0;
+
+impl WallSlamFrontEnd {
+    /// The segments that are long enough to be walls, or lie in the search band of an expected wall, as the laser would see them from where the
+    /// model has it.
+    pub(super) fn walls_among(
+        &self,
+        segments: &[WallSegment],
+        laser: &Pose2<f64>,
+        estimator: &mut Walls,
+    ) -> Vec<Observation<WallMeasurement>> {
+        let moved = self.mount().inverse().compose(laser);
+        let expected = self.params.expected_walls.then(|| estimator.filter.expected_landmarks());
+        let mut found = BTreeSet::new();
+        let mut observations = Vec::with_capacity(segments.len());
+        for segment in segments {
+            let seen = WallMeasurement::from(segment);
+            let measurement = if *laser == self.mount() { seen } else { seen.transformed(&moved) };
+            let wall = expected.as_ref().and_then(|expected| expected.find(&measurement, BAND_SIGMAS));
+            found.extend(wall);
+            if wall.is_some() || segment.length() >= self.params.min_wall_length {
+                observations.push(Observation { label: None, measurement });
+            }
+        }
+        if let Some(expected) = expected {
+            estimator.events.add("wall_expected", expected.len() as u64);
+            estimator.events.add("wall_in_search_band", found.len() as u64);
+        }
+        observations
     }
 }

@@ -1,5 +1,5 @@
 use nalgebra::{DefaultAllocator, Matrix3, Vector2};
-use wayfix_estimation_traits::{Angle, Pose2};
+use wayfix_estimation_traits::{Angle, Pose2, SensorModel};
 
 use super::{HeadingSensor, MovedSensor, PlanarRobot, PoseSensor, PositionSensor};
 use crate::{
@@ -16,6 +16,27 @@ pub enum MapMeasurement {
     Heading(HeadingSensor, Angle<f64>),
     /// A pose.
     Pose(PoseSensor, Pose2<f64>),
+}
+
+impl MapMeasurement {
+    /// The same with noise $`R + H Q H^T`$, where $`Q`$ is the covariance, in the body frame, of the motion that led to `pose`: see [`MovedSensor`].
+    pub fn with_motion_noise(self, pose: &Pose2<f64>, covariance: &Matrix3<f64>) -> Self {
+        match self {
+            Self::Position(sensor, measured) => {
+                let jacobian = sensor.jacobian(pose);
+                let added = jacobian * covariance * jacobian.transpose();
+                Self::Position(PositionSensor { covariance: sensor.covariance + added, ..sensor }, measured)
+            }
+            Self::Heading(sensor, measured) => {
+                Self::Heading(HeadingSensor { variance: sensor.variance + covariance.m33 }, measured)
+            }
+            Self::Pose(sensor, measured) => {
+                let to_map = pose.rotation_matrix().to_homogeneous();
+                let added = to_map * covariance * to_map.transpose();
+                Self::Pose(PoseSensor { covariance: sensor.covariance + added }, measured)
+            }
+        }
+    }
 }
 
 impl<M: LandmarkModel<Robot: PlanarRobot>> EkfSlam<M>

@@ -2,31 +2,36 @@
 
 mod residuals;
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    time::Duration,
-};
+use std::{collections::BTreeMap, time::Duration};
 
-use nalgebra::{Matrix1, Matrix3, Matrix4, SMatrix, Vector1, Vector3};
+use nalgebra::{Matrix1, Matrix2, Matrix3, Matrix4, SMatrix, Vector1, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2, SensorModel};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkId, LandmarkModel, MapMeasurement, MountedSensor, Observation, ObservationOutcome,
     PoseWithHeadingDrift, SlamSnapshot, UpdateReport, Wall, WallMeasurement, WallSensor,
 };
-use wayfix_slam_smoother::points::{AntennaPosition, Heading};
-use wayfix_smoother::{Graph, Params, Prior, SmootherError, VariableId};
+use wayfix_slam_smoother::{
+    ROBUST_KERNEL,
+    points::{AntennaPosition, Heading},
+};
+use wayfix_smoother::{Graph, Params, Prior, ResidualId, SmootherError, Stop, VariableId};
 use wayfix_system_core::MOST_ESTIMATES;
 
-use self::residuals::{DriftingMotion, MeasuredDrift, SeenWall};
+use self::residuals::{DriftingMotion, GivenWall, MeasuredDrift, SeenWall};
 use super::front_end::WallModel;
-use crate::slam::{MAX_BATCH_POSES, SlamFollower, SmoothedRun, StampedEstimate};
+use crate::slam::{MAX_BATCH_POSES, NO_BATCH, SlamFollower, SmoothedRun, StampedEstimate};
 
 /// What motions and starts are uncertain by at least, m and rad: singular covariances have no information.
 const SMALLEST_SIGMA: f64 = 1e-5;
 
+type PoseId = VariableId<Pose2<f64>>;
+
+/// The batch of a run as long as that is not too long.
+pub(super) struct WallBatch(Option<WallProblem>);
+
 /// All motions between keyframes, walls and pairings of a run.
-pub(super) struct WallBatch {
+struct WallProblem {
     sensor: MountedSensor<WallSensor>,
     start: PoseWithHeadingDrift,
     start_covariance: Matrix4<f64>,
@@ -34,47 +39,69 @@ pub(super) struct WallBatch {
     motions: Vec<(DriftingMotion, Matrix3<f64>)>,
     /// The filter's poses at the keyframes, where the batch starts.
     poses: Vec<Pose2<f64>>,
-    /// Measured heading drifts and their variances.
-    heading_drifts: Vec<(f64, f64)>,
+    /// Of all measurements of the heading drift: their information, and their sum in units of it.
+    drift_information: f64,
+    drift_information_vector: f64,
     /// Number of the keyframe and measurement, for each wall.
     seen: BTreeMap<LandmarkId, Vec<(usize, WallMeasurement)>>,
     /// The filter's walls, where the batch starts.
     walls: BTreeMap<LandmarkId, Wall>,
-    anchors: BTreeSet<LandmarkId>,
-    /// Measurements of the pose after a motion from a keyframe.
+    anchors: BTreeMap<LandmarkId, Wall>,
+    /// Walls that the user knows with a covariance.
+    given: BTreeMap<LandmarkId, (Wall, Matrix2<f64>)>,
+    /// Measurements of the pose after a motion from a keyframe, with the noise of that motion.
     measured: Vec<(usize, Pose2<f64>, MapMeasurement)>,
     /// Estimates of the filter, with the number of their keyframe and the motion from it.
     estimates: Decimated<(usize, Pose2<f64>, StampedEstimate)>,
 }
 
 impl WallBatch {
-    /// A batch that begins where the filter is.
+    /// A batch that begins where the filter is, with the walls that it has.
     pub(super) fn new(filter: &EkfSlam<WallModel>) -> Self {
-        Self {
+        let given = filter.landmarks().map(|wall| (wall.id, (wall.mean, wall.covariance)));
+        let given: BTreeMap<_, _> =
+            given.filter(|(id, _)| filter.anchors().all(|(anchor, _)| anchor != *id)).collect();
+        Self(Some(WallProblem {
             sensor: filter.model().0,
             start: *filter.robot(),
             start_covariance: filter.robot_covariance(),
             motions: Vec::new(),
             poses: vec![filter.robot().pose],
-            heading_drifts: Vec::new(),
+            drift_information: 0.0,
+            drift_information_vector: 0.0,
             seen: BTreeMap::new(),
-            walls: BTreeMap::new(),
-            anchors: BTreeSet::new(),
+            walls: given.iter().map(|(id, (wall, _))| (*id, *wall)).collect(),
+            anchors: filter.anchors().map(|(id, wall)| (id, *wall)).collect(),
+            given,
             measured: Vec::new(),
             estimates: Decimated::new(MOST_ESTIMATES),
-        }
+        }))
     }
 
-    fn is_too_long(&self) -> bool {
-        self.poses.len() > MAX_BATCH_POSES
+    /// Gives up a run that is too long.
+    fn check_length(&mut self) {
+        self.0.take_if(|problem| problem.motions.len().max(problem.measured.len()) > MAX_BATCH_POSES);
     }
+}
 
+impl WallProblem {
     fn newest(&self) -> usize {
         self.poses.len() - 1
     }
 
     /// The poses of the keyframes at the minimum.
-    fn solve(&self) -> Result<Vec<Pose2<f64>>, SmootherError> {
+    fn solve(&self) -> Result<Vec<Pose2<f64>>, String> {
+        let (mut graph, poses) = self.graph().map_err(|error| error.to_string())?;
+        let summary = graph.optimize(&Params::default()).map_err(|error| error.to_string())?;
+        if summary.stop == Stop::IterationLimit {
+            return Err(format!("no minimum after {} iterations", summary.iterations));
+        }
+        let solved: Result<_, SmootherError> = poses.iter().map(|pose| graph.value(*pose).copied()).collect();
+        solved.map_err(|error| error.to_string())
+    }
+
+    /// The least squares problem, and its poses.
+    fn graph(&self) -> Result<(Graph, Vec<PoseId>), SmootherError> {
         let mut graph = Graph::new();
         let poses: Vec<_> = self.poses.iter().map(|pose| graph.add_variable(*pose)).collect();
         let drift = graph.add_variable(Vector1::new(self.start.heading_drift));
@@ -82,24 +109,62 @@ impl WallBatch {
         for ((motion, covariance), ends) in self.motions.iter().zip(poses.windows(2)) {
             graph.add(*motion, (ends[0], ends[1], drift), information(covariance))?;
         }
-        for (measured, variance) in &self.heading_drifts {
-            graph.add(MeasuredDrift(*measured), (drift,), information(&Matrix1::new(*variance)))?;
+        if self.drift_information > 0.0 {
+            let mean = self.drift_information_vector / self.drift_information;
+            graph.add(MeasuredDrift(mean), (drift,), Matrix1::new(self.drift_information))?;
         }
         for (id, sightings) in &self.seen {
             self.add_wall(&mut graph, &poses, *id, sightings)?;
         }
         for (keyframe, motion, measurement) in &self.measured {
-            add_measured_pose(&mut graph, poses[*keyframe], motion, measurement)?;
+            let added = add_measured_pose(&mut graph, poses[*keyframe], motion, measurement)?;
+            graph.set_kernel(added, ROBUST_KERNEL)?;
         }
-        graph.optimize(&Params::default())?;
-        poses.iter().map(|pose| graph.value(*pose).copied()).collect()
+        Ok((graph, poses))
+    }
+
+    fn take_keyframe(
+        &mut self,
+        filter: &EkfSlam<WallModel>,
+        observations: &[Observation<WallMeasurement>],
+        report: &UpdateReport<WallMeasurement>,
+    ) {
+        let newest = self.newest();
+        self.poses[newest] = filter.robot().pose;
+        for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
+            let id = match outcome {
+                ObservationOutcome::Accepted { landmark, .. } => *landmark,
+                ObservationOutcome::Initialized { landmark } | ObservationOutcome::Restarted { landmark } => {
+                    self.seen.remove(landmark);
+                    self.given.remove(landmark);
+                    *landmark
+                }
+                _ => continue,
+            };
+            self.seen.entry(id).or_default().push((newest, *measurement));
+            if let Some(estimate) = filter.landmark(id) {
+                self.walls.insert(id, estimate.mean);
+            }
+        }
+        for merge in &report.merges {
+            let moved = self.seen.remove(&merge.removed).unwrap_or_default();
+            self.seen.entry(merge.kept).or_default().extend(moved);
+        }
+        self.seen.retain(|id, _| filter.contains(*id));
+        self.walls.retain(|id, _| filter.contains(*id));
+        for (id, wall) in filter.anchors() {
+            if self.anchors.insert(id, *wall).is_none() {
+                self.seen.remove(&id); // they placed it
+            }
+            self.walls.insert(id, *wall);
+        }
     }
 
     /// A start that is certain is fixed.
     fn add_start(
         &self,
         graph: &mut Graph,
-        pose: VariableId<Pose2<f64>>,
+        pose: PoseId,
         drift: VariableId<Vector1<f64>>,
     ) -> Result<(), SmootherError> {
         let of_pose = self.start_covariance.fixed_view::<3, 3>(0, 0).into_owned();
@@ -120,21 +185,24 @@ impl WallBatch {
     fn add_wall(
         &self,
         graph: &mut Graph,
-        poses: &[VariableId<Pose2<f64>>],
+        poses: &[PoseId],
         id: LandmarkId,
         sightings: &[(usize, WallMeasurement)],
     ) -> Result<(), SmootherError> {
         let Some(wall) = self.walls.get(&id) else { return Ok(()) };
         let variable = graph.add_variable(*wall);
-        if self.anchors.contains(&id) {
+        if self.anchors.contains_key(&id) {
             graph.fix(variable)?;
+        } else if let Some((given, covariance)) = self.given.get(&id) {
+            graph.add(GivenWall(*given), (variable,), information(covariance))?;
         }
         for (keyframe, measurement) in sightings {
             let expected = self.sensor.expected(&self.poses[*keyframe], wall);
             let noise = self.sensor.noise(measurement);
             let noise = self.sensor.noise_at_expected(&expected, measurement, &noise);
             let residual = SeenWall { sensor: self.sensor, measurement: *measurement };
-            graph.add(residual, (poses[*keyframe], variable), information(&noise))?;
+            let added = graph.add(residual, (poses[*keyframe], variable), information(&noise))?;
+            graph.set_kernel(added, ROBUST_KERNEL)?;
         }
         Ok(())
     }
@@ -142,28 +210,27 @@ impl WallBatch {
 
 fn add_measured_pose(
     graph: &mut Graph,
-    pose: VariableId<Pose2<f64>>,
+    pose: PoseId,
     motion: &Pose2<f64>,
     measurement: &MapMeasurement,
-) -> Result<(), SmootherError> {
+) -> Result<ResidualId, SmootherError> {
     match measurement {
         MapMeasurement::Position(sensor, measured) => {
             let residual =
                 AntennaPosition { antenna: motion.transform(&sensor.antenna), measured: *measured };
-            graph.add(residual, (pose,), information(&sensor.covariance))?;
+            graph.add(residual, (pose,), information(&sensor.covariance))
         }
         MapMeasurement::Heading(sensor, measured) => {
             let residual = Heading { measured: measured.radians() - motion.heading() };
-            graph.add(residual, (pose,), information(&Matrix1::new(sensor.variance)))?;
+            graph.add(residual, (pose,), information(&Matrix1::new(sensor.variance)))
         }
         MapMeasurement::Pose(sensor, measured) => {
             let carry = motion.adjoint();
             let covariance = carry * sensor.noise(measured) * carry.transpose(); // in the body frame
             let before = measured.compose(&motion.inverse());
-            graph.add(Prior::new(before), (pose,), information(&covariance))?;
+            graph.add(Prior::new(before), (pose,), information(&covariance))
         }
     }
-    Ok(())
 }
 
 /// $`(Σ + σ_0^2 I)^{-1}`$; a matrix of NaN, which the graph refuses, if there is none.
@@ -183,21 +250,22 @@ impl SlamFollower<WallModel> for WallBatch {
         jacobian: &Matrix4<f64>,
         noise: &Matrix4<f64>,
     ) {
-        if self.is_too_long() {
-            return;
-        }
+        let Some(problem) = &mut self.0 else { return };
         let motion = DriftingMotion {
             motion: before.pose.inverse().compose(&after.pose),
             heading_drift: before.heading_drift,
             drift_jacobian: Vector3::from(jacobian.fixed_view::<3, 1>(0, 3)),
         };
-        self.motions.push((motion, noise.fixed_view::<3, 3>(0, 0).into_owned()));
-        self.poses.push(after.pose);
+        problem.motions.push((motion, noise.fixed_view::<3, 3>(0, 0).into_owned()));
+        problem.poses.push(after.pose);
+        self.check_length();
     }
 
-    fn heading_drift_measured(&mut self, measured: f64, variance: f64) {
-        if !self.is_too_long() {
-            self.heading_drifts.push((measured, variance));
+    fn heading_drift_measured(&mut self, measured: f64, information: f64) {
+        // A drift that is certain has no information to gain.
+        if let Some(problem) = self.0.as_mut().filter(|_| information.is_finite()) {
+            problem.drift_information += information;
+            problem.drift_information_vector += information * measured;
         }
     }
 
@@ -207,48 +275,22 @@ impl SlamFollower<WallModel> for WallBatch {
         observations: &[Observation<WallMeasurement>],
         report: &UpdateReport<WallMeasurement>,
     ) {
-        if self.is_too_long() {
-            return;
-        }
-        let newest = self.newest();
-        self.poses[newest] = filter.robot().pose;
-        for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
-            let id = match outcome {
-                ObservationOutcome::Accepted { landmark, .. } => *landmark,
-                ObservationOutcome::Initialized { landmark } | ObservationOutcome::Restarted { landmark } => {
-                    self.seen.remove(landmark);
-                    *landmark
-                }
-                _ => continue,
-            };
-            self.seen.entry(id).or_default().push((newest, *measurement));
-        }
-        for merge in &report.merges {
-            let moved = self.seen.remove(&merge.removed).unwrap_or_default();
-            self.seen.entry(merge.kept).or_default().extend(moved);
-        }
-        self.seen.retain(|id, _| filter.contains(*id));
-        for (id, wall) in filter.anchors() {
-            self.anchors.insert(id);
-            self.walls.insert(id, *wall);
-        }
-        for id in self.seen.keys() {
-            if let Some(estimate) = filter.landmark(*id) {
-                self.walls.insert(*id, estimate.mean);
-            }
+        if let Some(problem) = &mut self.0 {
+            problem.take_keyframe(filter, observations, report);
         }
     }
 
     fn measured(&mut self, _: &EkfSlam<WallModel>, measurement: &MapMeasurement, motion: Pose2<f64>) {
-        if !self.is_too_long() {
-            self.measured.push((self.newest(), motion, *measurement));
+        if let Some(problem) = &mut self.0 {
+            problem.measured.push((problem.newest(), motion, *measurement));
+            self.check_length();
         }
     }
 
     fn estimated(&mut self, filter: &EkfSlam<WallModel>, estimate: &StampedEstimate) -> Duration {
-        if !self.is_too_long() {
+        if let Some(problem) = &mut self.0 {
             let motion = filter.robot().pose.inverse().compose(&estimate.pose);
-            self.estimates.push((self.newest(), motion, *estimate));
+            problem.estimates.push((problem.newest(), motion, *estimate));
         }
         Duration::ZERO // a batch is no part of a step
     }
@@ -259,12 +301,14 @@ impl SlamFollower<WallModel> for WallBatch {
     }
 
     fn finish(&mut self) -> Result<SmoothedRun, String> {
-        if self.is_too_long() {
-            return Err(format!("the log has more than {MAX_BATCH_POSES} keyframes"));
-        }
-        let poses = self.solve().map_err(|error| error.to_string())?;
+        let Some(problem) = &self.0 else {
+            return Err(format!(
+                "{NO_BATCH}: the log has more than {MAX_BATCH_POSES} keyframes or measured poses"
+            ));
+        };
+        let poses = problem.solve().map_err(|reason| format!("{NO_BATCH}: {reason}"))?;
         let mut estimates = Decimated::new(MOST_ESTIMATES);
-        for (keyframe, motion, estimate) in self.estimates.kept() {
+        for (keyframe, motion, estimate) in problem.estimates.kept() {
             estimates.push(StampedEstimate { pose: poses[*keyframe].compose(motion), ..*estimate });
         }
         Ok(SmoothedRun {
@@ -276,3 +320,6 @@ impl SlamFollower<WallModel> for WallBatch {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -44,7 +44,20 @@ impl Residual for SeenWall {
     }
 }
 
-/// The heading drift as a match of two scans measures it: $`r = κ - z`$.
+/// A wall that is known beforehand: $`r = m ⊟ m_0`$.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GivenWall(pub(super) Wall);
+
+impl Residual for GivenWall {
+    type Dim = Const<2>;
+    type Variables = (Wall,);
+
+    fn value(&self, (wall,): (&Wall,)) -> Vector2<f64> {
+        self.0.local(wall)
+    }
+}
+
+/// The heading drift as the matches of scans measure it: $`r = κ - z`$.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeasuredDrift(pub(super) f64);
 
@@ -92,6 +105,7 @@ mod tests {
             let residual = SeenWall { sensor, measurement };
             assert!(residual.value((&robot, &wall)).norm() < 0.2);
             laws::residual(&residual, (&robot, &wall)).unwrap();
+            laws::residual(&GivenWall(wall), (&wall.retract(&Vector2::new(0.1, -0.05)),)).unwrap();
         }
     }
 }
