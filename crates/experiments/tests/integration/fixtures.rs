@@ -19,22 +19,11 @@ fn differences(folder: &Path) -> Vec<StoredFixtureDifference> {
 }
 
 #[test]
-fn the_stored_logs_are_what_their_seeds_give_and_light() {
-    let stored = check(STORED).unwrap_or_else(|error| panic!("{error}"));
-    let n_bytes: usize = stored.iter().map(|log| log.n_bytes).sum();
-    // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, all together below 20 MB.
-    let with_camera = |log: &&StoredFixture| {
-        ["color_", "store_", "film_", "scene_"].iter().any(|kind| log.name.starts_with(kind))
-    };
-    let most = |log: &StoredFixture| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
-    assert!(stored.iter().all(|log| with_camera(&log) || log.n_bytes < most(log)), "{stored:?}");
-    assert!(n_bytes < 20_000_000, "{stored:?}");
-}
-
-#[test]
 fn a_stored_log_reads_back_as_simulated() {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    let with_camera = Scenario::in_color().into_iter().chain(Scenario::in_store());
+    // One of each kind: it costs seconds to see a drive again.
+    let with_camera =
+        Scenario::in_color().into_iter().take(1).chain(Scenario::in_store().into_iter().take(1));
     for scenario in Scenario::all().into_iter().chain(with_camera) {
         let simulated =
             scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed)).expect("valid parameters");
@@ -80,17 +69,24 @@ fn what_differs_is_named() {
 }
 
 #[test]
-fn building_makes_a_missing_folder_and_the_stored_bytes() {
+fn building_gives_the_stored_bytes_which_are_few() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let nowhere = folder.path().join("not").join("yet");
     assert!(differences(&nowhere).iter().all(|d| matches!(d, StoredFixtureDifference::Missing { .. })));
     let built = build(&nowhere).expect("built");
     assert!(built.len() > 10);
-    for StoredFixture { path, n_bytes, .. } in built {
-        let bytes = fs::read(&path).expect("written");
+    for StoredFixture { path, n_bytes, .. } in &built {
+        let bytes = fs::read(path).expect("written");
         let stored = fs::read(Path::new(STORED).join(path.file_name().expect("a name"))).expect("stored");
-        assert!(bytes.len() == n_bytes && bytes == stored, "{}", path.display());
+        assert!(bytes.len() == *n_bytes && bytes == stored, "{}", path.display());
     }
+    // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, all together below 20 MB.
+    let with_camera = |log: &StoredFixture| {
+        ["color_", "store_", "film_", "scene_"].iter().any(|kind| log.name.starts_with(kind))
+    };
+    let most = |log: &StoredFixture| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
+    assert!(built.iter().all(|log| with_camera(log) || log.n_bytes < most(log)), "{built:?}");
+    assert!(built.iter().map(|log| log.n_bytes).sum::<usize>() < 20_000_000, "{built:?}");
     let a_file = folder.path().join("file");
     fs::write(&a_file, b"").expect("writable");
     assert!(matches!(build(&a_file), Err(StoredFixtureError::Io { .. })));
