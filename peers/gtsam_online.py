@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""A planar pose graph edge by edge through GTSAM's iSAM2, in the order of `cargo bench -p wayfix-smoother --bench online`.
+"""A planar pose graph edge by edge, in this project and in GTSAM's iSAM2, one after the other in one run, one thread.
 
-    gtsam_online.py FILE.g2o[.gz] [RELINEARIZE_THRESHOLD]
+    cargo bench -p wayfix-smoother --bench online --no-run        # prints the PATH
+    gtsam_online.py FILE.g2o[.gz] PATH [RELINEARIZE_THRESHOLD]
 
-Prints median and 99th percentile of the computing time of a step, and the cost (without 1/2) at the end; then what further updates without new edges leave of it.
+Prints a table: number of steps, median and 99th percentile of the computing time of a step, their sum, and the cost (without 1/2) at the end, relative to the batch's; for iSAM2 too after
+20 updates without new edges.
 """
 
 import gzip
+import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -31,7 +35,7 @@ def main():
     edges = [edge for edge in edges if edge is not None and len(edge.keys()) == 2]
     edges.sort(key=lambda edge: (max(edge.keys()), abs(edge.keys()[0] - edge.keys()[1])))
     params = gtsam.ISAM2Params()
-    params.setRelinearizeThreshold(float(sys.argv[2]) if len(sys.argv) > 2 else 0.1)
+    params.setRelinearizeThreshold(float(sys.argv[3]) if len(sys.argv) > 3 else 0.1)
     params.relinearizeSkip = 1
     params.setFactorization("QR")  # Cholesky fails at vertex 1058 of manhattan
     isam = gtsam.ISAM2(params)
@@ -58,11 +62,17 @@ def main():
     steps = sorted(1e3 * second for second in seconds)
     quantile = lambda share: steps[int((len(steps) - 1) * share)]
     cost = lambda: 2 * graph.error(isam.calculateEstimate())
-    print(f"{len(steps)} steps, median {quantile(0.5):.2f} ms, 99 % {quantile(0.99):.2f} ms, sum {sum(seconds):.1f} s")
-    print(f"cost {cost():.9e}", flush=True)
+    own = subprocess.run([sys.argv[2], sys.argv[1]], capture_output=True, text=True, check=True).stdout
+    n, median, slow, total = re.search(r": (\d+) steps, median ([\d.]+) ms, 99 % ([\d.]+) ms.* sum ([\d.]+) s", own).groups()
+    batch, relative = re.search(r"batch ([\d.e]+), relative (\S+)", own).groups()
+    print("| program | steps | median, ms | 99 %, ms | sum, s | cost above the batch's |\n| --- | ---: | ---: | ---: | ---: | ---: |")
+    print(f"| Wayfix | {n} | {median} | {slow} | {total} | {relative} |")
+    above = lambda: f"{cost() / float(batch) - 1:.1e}"
+    at_end = above()
     for _ in range(N_FURTHER):
         isam.update()
-    print(f"after {N_FURTHER} updates without new edges {cost():.9e}")
+    times = f"{quantile(0.5):.2f} | {quantile(0.99):.2f} | {sum(seconds):.1f}"
+    print(f"| iSAM2 | {len(steps)} | {times} | {at_end}, {above()} after {N_FURTHER} updates more |")
 
 
 if __name__ == "__main__":
