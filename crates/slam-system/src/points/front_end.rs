@@ -175,7 +175,7 @@ impl PointSlamFrontEnd {
         let stopwatch = Stopwatch::start();
         estimator.predict(&MotionWithRangeScale(self.params.increment_noise), increment)?;
         estimator.step += stopwatch.elapsed();
-        estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
+        estimator.move_dead_reckoning(increment);
         self.time = stamp;
         Ok(())
     }

@@ -1,7 +1,7 @@
 use std::{collections::BTreeSet, time::Duration};
 
 use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allocator};
-use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
+use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, TangentMatrix};
 use wayfix_evaluation::plot::Decimated;
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
@@ -58,7 +58,8 @@ impl<M: LandmarkModel> SlamEstimator<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    pub(crate) fn new(
+    /// The filter where the robot starts; [observability](ObservabilityRecorder) is recorded where it is wanted.
+    pub fn new(
         filter: EkfSlam<M>,
         association: AnyAssociation,
         records_observability: bool,
@@ -79,8 +80,16 @@ where
         }
     }
 
+    /// The filter: robot, map, covariance.
+    pub fn filter(&self) -> &EkfSlam<M> {
+        &self.filter
+    }
+
     /// Moves the robot.
-    pub(crate) fn predict<U: ?Sized>(
+    ///
+    /// # Errors
+    /// Returns why the filter refuses the motion; it is then unchanged.
+    pub fn predict<U: ?Sized>(
         &mut self,
         motion: &impl MotionModel<State = M::Robot, Control = U>,
         control: &U,
@@ -108,8 +117,16 @@ where
         Ok(())
     }
 
+    /// Moves the robot by odometry alone, to compare with.
+    pub fn move_dead_reckoning(&mut self, increment: &Pose2<f64>) {
+        self.dead_reckoning = self.dead_reckoning.compose(increment);
+    }
+
     /// Corrects robot and map by the observations of one scan. Counts their outcomes; `describe` gives the text for an unusable one.
-    pub(crate) fn update(
+    ///
+    /// # Errors
+    /// Returns why the filter refuses the scan; it is then unchanged.
+    pub fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],
         describe: impl Fn(&M::Measurement) -> String,
@@ -166,8 +183,8 @@ where
         (motion.propagate(state, control), covariance)
     }
 
-    /// Adds the estimate at a stamp.
-    pub(crate) fn add_stamped_estimate(
+    /// Adds the estimate at a stamp: pose, covariance in the body frame, and [`nis`] of what corrected.
+    pub fn add_stamped_estimate(
         &mut self,
         stamp: Stamp,
         pose: Pose2<f64>,
@@ -193,7 +210,7 @@ where
 }
 
 /// Sum and number of the NIS of what corrected.
-pub(crate) fn nis<Z: Manifold<Scalar = f64>>(report: &UpdateReport<Z>) -> (f64, usize)
+pub fn nis<Z: Manifold<Scalar = f64>>(report: &UpdateReport<Z>) -> (f64, usize)
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {

@@ -1,7 +1,7 @@
 //! SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 //!
 //! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
-//! Filter, association, observability, saved maps, figures and pictures are the same for both. A smoother may follow the filter: it takes the
+//! Filter, association, observability, saved maps, figures and pictures are the same for both. `examples/own_landmark.rs` adds a third kind of landmark. A smoother may follow the filter: it takes the
 //! motions and pairings, and gives the estimates or the optimum to compare with.
 
 mod association;
@@ -20,8 +20,7 @@ mod system;
 
 pub use association::AssociationRule;
 pub use estimates::{SlamDrawingState, SlamEstimateRecorder};
-pub(crate) use estimator::nis;
-pub use estimator::{SlamEstimator, StampedEstimate};
+pub use estimator::{SlamEstimator, StampedEstimate, nis};
 pub use external::ExternalState;
 pub(crate) use figures::{path_metrics, summary, timings};
 pub(crate) use follower::{MAX_BATCH_POSES, NO_BATCH, SlamFollower, carried};

@@ -45,7 +45,8 @@ impl<F: FrontEnd> SlamSystem<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
-    pub(crate) fn new(front_end: F, estimator: SlamEstimator<F::Model>) -> Self {
+    /// A system before its first record.
+    pub fn new(front_end: F, estimator: SlamEstimator<F::Model>) -> Self {
         Self {
             front_end,
             estimator,

@@ -226,7 +226,7 @@ impl WallSlamFrontEnd {
             .relative_motion
             .then(&self.params.increment_noise, estimator.filter.robot().heading_drift, increment)
             .with_added_covariance(error);
-        estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
+        estimator.move_dead_reckoning(increment);
         if *unknown_seconds > self.params.velocity_timeout {
             estimator.events.warn(
                 "motion_unknown",
