@@ -74,6 +74,7 @@ fn steps() -> Result<Vec<Step>> {
         task("docs", &["docs"]),
         task("regress", &["regress"]),
         task("clients", &["clients"]),
+        task("examples", &["examples"]),
         task("tutorials", &["tutorials"]),
         task("campaign", &["campaign"]),
         task("robot", &["robot"]),

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PinholeCamera};
 use wayfix_color_model::{
     ColorDensity, ColorLocalizer, ColorMeans, ColorModelError, LightingFilter, LightingFilterParams,
@@ -13,6 +13,10 @@ use wayfix_color_model::{
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
+
+/// Size of an image, pixels.
+const WIDTH: usize = 160;
+const HEIGHT: usize = 120;
 
 /// Forgets exponentially, every colour for itself.
 #[derive(Clone)]
@@ -58,7 +62,7 @@ fn localized(light: RunningMean) -> Result<f64, Box<dyn std::error::Error>> {
     let vertices = [(-2.0, -1.5), (2.0, -1.5), (2.0, 1.5), (-2.0, 1.5)].map(|(x, y)| Vector3::new(x, y, 0.0));
     let carpet = ColoredShape::Polygon { color: ColorId(0), vertices: vertices.to_vec() };
     let map = Arc::new(ColorMap::new(vec!["green".into()], vec![carpet])?);
-    let camera = PinholeCamera::from_field_of_view(32, 24, 1.0, 0.8)?;
+    let camera = PinholeCamera::from_field_of_view(WIDTH as u32, HEIGHT as u32, 1.0, 0.8)?;
     let start = StartPosePrior::Near(Gaussian::from_sigmas(Pose2::identity(), &Vector3::new(0.1, 0.1, 0.1))?);
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
     let params = LocalizerParams { max_particles: 200, ..LocalizerParams::default() };
@@ -68,9 +72,10 @@ fn localized(light: RunningMean) -> Result<f64, Box<dyn std::error::Error>> {
         let forward = OdometryStep { increment: Some(Pose2::new(0.01, 0.0, 0.0)), seconds: 0.1 };
         localizer.predict(&forward, &mut rng)?;
         // The lower half of the image is carpet.
-        let pixels =
-            (0..32 * 24).map(|at| if at < 32 * 12 { [20, 128, 128] } else { [100 + 2 * k, 128, 128] });
-        localizer.update(&YuvImage::new(32, 24, pixels.collect())?, &mount, &mut rng)?;
+        let mean = |at| if at < WIDTH * HEIGHT / 2 { [20, 128, 128] } else { [100 + 2 * k, 128, 128] };
+        let mut noisy = |channel: u8| channel + rng.random_range(0..13) - 6;
+        let pixels = (0..WIDTH * HEIGHT).map(|at| mean(at).map(&mut noisy));
+        localizer.update(&YuvImage::new(WIDTH as u32, HEIGHT as u32, pixels.collect())?, &mount, &mut rng)?;
     }
     Ok(localizer.light().colors()?[0].mean.x)
 }

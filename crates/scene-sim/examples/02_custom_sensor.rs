@@ -1,5 +1,6 @@
 //! A world and a sensor of one's own, driven by the simulation as it is: a beacon that walks, and a receiver that hears how far
 //! away it is and knows no bearing better than left or right.
+//! `cargo run -p wayfix-scene-sim --example 02_custom_sensor`
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

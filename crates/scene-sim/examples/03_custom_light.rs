@@ -1,4 +1,5 @@
 //! A light of one's own: the sun comes in by a window and draws a bright stripe across the field.
+//! `cargo run -p wayfix-scene-sim --features league --example 03_custom_light`
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};

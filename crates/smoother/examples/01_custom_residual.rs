@@ -1,4 +1,5 @@
 //! A variable and a residual of your own: a robot that hears a beacon through a cable of unknown delay. Public API only.
+//! `cargo run -p wayfix-smoother --example 01_custom_residual`
 
 use nalgebra::{Const, Matrix1, Vector1, Vector2};
 use wayfix_estimation_traits::{Manifold, Pose2};

@@ -1,7 +1,7 @@
 //! SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 //!
 //! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
-//! Filter, association, observability, saved maps, figures and pictures are the same for both. `examples/own_landmark.rs` adds a third kind of landmark. A smoother may follow the filter: it takes the
+//! Filter, association, observability, saved maps, figures and pictures are the same for both. `examples/01_custom_landmark.rs` adds a third kind of landmark. A smoother may follow the filter: it takes the
 //! motions and pairings, and gives the estimates or the optimum to compare with.
 
 mod association;

@@ -1,6 +1,6 @@
 //! SLAM on a log with a kind of landmark of your own, here posts whose position a sensor gives in the robot frame: a [`LandmarkModel`] and a
 //! [`FrontEnd`]. Association, figures, saved maps and external sensors come with [`SlamSystem`].
-//! `cargo run -p wayfix-slam-system --example own_landmark`
+//! `cargo run -p wayfix-slam-system --example 01_custom_landmark`
 
 use std::path::Path;
 
