@@ -30,6 +30,8 @@ def read(path):
 
 
 def main():
+    if len(sys.argv) < 3 or not Path(sys.argv[2]).is_file():
+        sys.exit(__doc__)
     graph, start = read(Path(sys.argv[1]))
     edges = [graph.at(k) for k in range(graph.size())]
     edges = [edge for edge in edges if edge is not None and len(edge.keys()) == 2]
@@ -64,7 +66,7 @@ def main():
     cost = lambda: 2 * graph.error(isam.calculateEstimate())
     own = subprocess.run([sys.argv[2], sys.argv[1]], capture_output=True, text=True, check=True).stdout
     n, median, slow, total = re.search(r": (\d+) steps, median ([\d.]+) ms, 99 % ([\d.]+) ms.* sum ([\d.]+) s", own).groups()
-    batch, relative = re.search(r"batch ([\d.e]+), relative (\S+)", own).groups()
+    batch, relative = re.search(r"batch (\S+), relative (\S+)", own).groups()
     print("| program | steps | median, ms | 99 %, ms | sum, s | cost above the batch's |\n| --- | ---: | ---: | ---: | ---: | ---: |")
     print(f"| Wayfix | {n} | {median} | {slow} | {total} | {relative} |")
     above = lambda: f"{cost() / float(batch) - 1:.1e}"

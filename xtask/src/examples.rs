@@ -1,4 +1,4 @@
-//! `cargo xtask examples`: runs every example whose first comment says how to run it without arguments.
+//! `cargo xtask examples`: runs every example that takes no arguments, as its first comment says.
 
 use std::fs;
 use std::process::ExitCode;
@@ -17,6 +17,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     let programs = shell::target_dir().join("debug/examples");
     let metadata = shell::command("cargo", &["metadata", "--no-deps", "--format-version", "1"]).output()?;
     let metadata: Value = serde_json::from_slice(&metadata.stdout).context("cargo metadata")?;
+    let mut unknown: Vec<&String> = args.iter().collect();
     let mut n_run = 0;
     for package in metadata["packages"].as_array().into_iter().flatten() {
         for target in package["targets"].as_array().into_iter().flatten() {
@@ -25,11 +26,12 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
             if !is_example || !(args.is_empty() || args.iter().any(|arg| arg == name)) {
                 continue;
             }
+            unknown.retain(|arg| *arg != name);
             let source = fs::read_to_string(text(&target["src_path"]))?;
             let Some(command) = command(&source) else {
                 bail!("example {name} of {package} does not say how to run it")
             };
-            if needs_no_argument(command) {
+            if takes_no_argument(command) {
                 println!("examples: {name}");
                 let mut command = shell::command(programs.join(name), &[]);
                 shell::check(&mut command).with_context(|| format!("example {name} of {package}"))?;
@@ -37,8 +39,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
             }
         }
     }
-    if n_run == 0 {
-        bail!("usage: cargo xtask examples [NAME…]");
+    if !unknown.is_empty() {
+        bail!("no example {unknown:?}\nusage: cargo xtask examples [NAME…]");
     }
     println!("examples: {n_run} run");
     Ok(ExitCode::SUCCESS)
@@ -56,7 +58,7 @@ fn command(source: &str) -> Option<&str> {
         .find(|code| code.contains("cargo run") && code.contains("--example"))
 }
 
-fn needs_no_argument(command: &str) -> bool {
+fn takes_no_argument(command: &str) -> bool {
     command.split_once("--example ").is_some_and(|(_, name)| !name.trim().contains(' '))
 }
 
@@ -69,9 +71,9 @@ mod tests {
         let source = "//! Text `code`.\n//! `cargo run -p wayfix-kalman --example 01_line`\n\nfn main() {}";
         let found = command(source).unwrap();
         assert_eq!(found, "cargo run -p wayfix-kalman --example 01_line");
-        assert!(needs_no_argument(found));
-        assert!(!needs_no_argument("cargo run -p wayfix-kalman --example 01_line -- PATH"));
-        assert!(!needs_no_argument("cargo run -p wayfix-kalman --example 01_line [SEED]"));
+        assert!(takes_no_argument(found));
+        assert!(!takes_no_argument("cargo run -p wayfix-kalman --example 01_line -- PATH"));
+        assert!(!takes_no_argument("cargo run -p wayfix-kalman --example 01_line [SEED]"));
         assert_eq!(command("fn main() {}"), None);
     }
 }

@@ -33,7 +33,7 @@ Usage: cargo xtask TASK [OPTIONS]
                      --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress;
                      --transcripts runs the commands of the recordings in docs/ and writes what they print;
                      --papers [REPORT] writes docs/papers.md anew, with the measured figures of a report
-  examples [NAME…]   run the examples that need no arguments
+  examples [NAME…]   run the examples that take no arguments
   tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns

@@ -1,5 +1,5 @@
 //! SLAM on a log with a kind of landmark of your own, here posts whose position a sensor gives in the robot frame: a [`LandmarkModel`] and a
-//! [`FrontEnd`]. Association, figures, saved maps and external sensors come with [`SlamSystem`].
+//! [`FrontEnd`]. Association, observability, external sensors and the state to save come with [`SlamSystem`].
 //! `cargo run -p wayfix-slam-system --example 01_custom_landmark`
 
 use std::path::Path;
@@ -72,8 +72,9 @@ impl FrontEnd for PostFrontEnd {
     fn take(&mut self, record: &Record, estimator: &mut Posts) -> Result<(), String> {
         match &record.data {
             RecordData::OdometryIncrement(increment) => {
+                estimator.predict(&self.odometry, increment)?;
                 estimator.move_dead_reckoning(increment);
-                estimator.predict(&self.odometry, increment)
+                Ok(())
             }
             RecordData::Detections(detections) => {
                 let observations: Vec<_> = detections.iter().filter_map(observation).collect();

@@ -100,7 +100,7 @@ impl PointFollower {
     /// Adds a pose to the smoother where the filter is.
     fn advance(&mut self, filter: &EkfSlam<PointSensor>) -> Result<(), SlamSmootherError> {
         if self.is_batch && self.smoother.newest() >= MAX_BATCH_POSES {
-            self.fail(format!("the log has more than {MAX_BATCH_POSES} scans"));
+            self.fail(format!("the log has more than {MAX_BATCH_POSES} scans and measured poses"));
             return Ok(());
         }
         let guess = self.is_batch.then(|| filter.robot().pose);

@@ -58,7 +58,7 @@ impl<M: LandmarkModel> SlamEstimator<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// The filter where the robot starts; [observability](ObservabilityRecorder) is recorded where it is wanted.
+    /// A filter before its first record. Dead reckoning begins at `start`.
     pub fn new(
         filter: EkfSlam<M>,
         association: AnyAssociation,
@@ -78,6 +78,11 @@ where
             unseen_anchors: BTreeSet::new(),
             step: Duration::ZERO,
         }
+    }
+
+    /// What happened so far: counts and warnings.
+    pub fn events(&mut self) -> &mut EventCounts {
+        &mut self.events
     }
 
     /// The filter: robot, map, covariance.

@@ -39,11 +39,11 @@ where
                 return Ok(());
             }
         }
+        let moved = self.filter.robot().pose().compose(&motion);
         match self.filter.update_moved(measurement, motion, covariance) {
             Ok(innovation) => {
                 self.record_robot(&innovation.jacobian, &innovation.covariance);
                 if let Some(follower) = &mut self.follower {
-                    let moved = self.filter.robot().pose().compose(&motion);
                     let measurement = measurement.with_motion_noise(&moved, &covariance);
                     follower.measured(&self.filter, &measurement, motion);
                 }

@@ -30,7 +30,7 @@ where
         jacobian: &TangentMatrix<M::Robot>,
         noise: &TangentMatrix<M::Robot>,
     );
-    /// The filter has taken a measurement of the heading drift of a robot that has one, rad/m, and as much information of it, m²/rad².
+    /// The filter has taken a measurement of the heading drift of a robot that has one, rad/m, with the information that it gained, m²/rad²: less than the sensor has if that is an outlier.
     fn heading_drift_measured(&mut self, _measured: f64, _information: f64) {}
     /// The filter has taken a scan.
     fn updated(

@@ -49,7 +49,8 @@ where
         estimator: &mut SlamEstimator<Self::Model>,
     ) -> Result<Option<MotionEstimate>, String>;
 
-    /// A measurement of the pose has corrected the filter, whose robot was at `before`.
+    /// The filter has taken or refused a measurement of the pose: its robot was at `before`. What was computed from it, as a motion that
+    /// [`motion_to`](Self::motion_to) gives, may have to follow.
     fn corrected(
         &mut self,
         _before: &<Self::Model as LandmarkModel>::Robot,

@@ -215,6 +215,20 @@ mod tests {
         assert_abs_diff_eq!(total, posterior.fixed_view::<3, 3>(1, 1).into_owned(), epsilon = 1e-9);
     }
 
+    /// To first order in the change: increments of half a metre, turned by 1e-3 rad/m.
+    #[test]
+    fn a_changed_drift_changes_the_motion_as_if_known_before() {
+        let along = |drift: f64| {
+            let increments = [(0.3, 0.1), (0.4, -0.3), (0.2, 0.5)].map(|(x, turn)| Pose2::new(x, 0.02, turn));
+            increments.iter().fold(RelativeMotion::default(), |relative_motion, step| {
+                relative_motion.then(&OdometryMotion::default(), drift, step)
+            })
+        };
+        let changed = along(0.02).with_drift_changed_by(1e-3);
+        assert_abs_diff_eq!(changed.motion.local(&along(0.021).motion), Vector3::zeros(), epsilon = 1e-6);
+        assert!(along(0.02).motion.local(&changed.motion).norm() > 5e-4);
+    }
+
     #[test]
     fn standstill_of_odometry_is_no_certain_standstill() {
         let still = RelativeMotion::default().then(&OdometryMotion::default(), 0.1, &Pose2::identity());

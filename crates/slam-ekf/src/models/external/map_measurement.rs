@@ -19,7 +19,7 @@ pub enum MapMeasurement {
 }
 
 impl MapMeasurement {
-    /// The same with noise $`R + H Q H^T`$, where $`Q`$ is the covariance, in the body frame, of the motion that led to `pose`: see [`MovedSensor`].
+    /// The same with noise $`R + H Q H^T`$, at a `pose` in the map that a motion led to. $`Q`$ is the covariance of the motion in the body frame at its end: see [`MovedSensor`].
     pub fn with_motion_noise(self, pose: &Pose2<f64>, covariance: &Matrix3<f64>) -> Self {
         match self {
             Self::Position(sensor, measured) => {

@@ -22,7 +22,7 @@ use self::residuals::{DriftingMotion, GivenWall, MeasuredDrift, SeenWall};
 use super::front_end::WallModel;
 use crate::slam::{MAX_BATCH_POSES, NO_BATCH, SlamFollower, SmoothedRun, StampedEstimate};
 
-/// What motions and starts are uncertain by at least, m and rad: singular covariances have no information.
+/// What everything is uncertain by at least, m, rad and rad/m: singular covariances have no information.
 const SMALLEST_SIGMA: f64 = 1e-5;
 
 type PoseId = VariableId<Pose2<f64>>;
@@ -47,9 +47,10 @@ struct WallProblem {
     /// The filter's walls, where the batch starts.
     walls: BTreeMap<LandmarkId, Wall>,
     anchors: BTreeMap<LandmarkId, Wall>,
-    /// Walls that the user knows with a covariance.
-    given: BTreeMap<LandmarkId, (Wall, Matrix2<f64>)>,
-    /// Measurements of the pose after a motion from a keyframe, with the noise of that motion.
+    /// Walls that the user knows, with their covariances; they are independent of each other and of the start.
+    given: BTreeMap<LandmarkId, Vec<(Wall, Matrix2<f64>)>>,
+    /// Measurements of the pose after a motion from a keyframe. Their noise includes that motion's, which counts once more in the motion to the next keyframe, as in
+    /// the filter.
     measured: Vec<(usize, Pose2<f64>, MapMeasurement)>,
     /// Estimates of the filter, with the number of their keyframe and the motion from it.
     estimates: Decimated<(usize, Pose2<f64>, StampedEstimate)>,
@@ -58,7 +59,7 @@ struct WallProblem {
 impl WallBatch {
     /// A batch that begins where the filter is, with the walls that it has.
     pub(super) fn new(filter: &EkfSlam<WallModel>) -> Self {
-        let given = filter.landmarks().map(|wall| (wall.id, (wall.mean, wall.covariance)));
+        let given = filter.landmarks().map(|wall| (wall.id, vec![(wall.mean, wall.covariance)]));
         let given: BTreeMap<_, _> =
             given.filter(|(id, _)| filter.anchors().all(|(anchor, _)| anchor != *id)).collect();
         Self(Some(WallProblem {
@@ -70,7 +71,7 @@ impl WallBatch {
             drift_information: 0.0,
             drift_information_vector: 0.0,
             seen: BTreeMap::new(),
-            walls: given.iter().map(|(id, (wall, _))| (*id, *wall)).collect(),
+            walls: filter.landmarks().map(|wall| (wall.id, wall.mean)).collect(),
             anchors: filter.anchors().map(|(id, wall)| (id, *wall)).collect(),
             given,
             measured: Vec::new(),
@@ -149,12 +150,15 @@ impl WallProblem {
         for merge in &report.merges {
             let moved = self.seen.remove(&merge.removed).unwrap_or_default();
             self.seen.entry(merge.kept).or_default().extend(moved);
+            if let Some(given) = self.given.remove(&merge.removed) {
+                self.given.entry(merge.kept).or_default().extend(given);
+            }
         }
         self.seen.retain(|id, _| filter.contains(*id));
         self.walls.retain(|id, _| filter.contains(*id));
         for (id, wall) in filter.anchors() {
             if self.anchors.insert(id, *wall).is_none() {
-                self.seen.remove(&id); // they placed it
+                self.seen.remove(&id); // its place is conditional on them already
             }
             self.walls.insert(id, *wall);
         }
@@ -193,8 +197,10 @@ impl WallProblem {
         let variable = graph.add_variable(*wall);
         if self.anchors.contains_key(&id) {
             graph.fix(variable)?;
-        } else if let Some((given, covariance)) = self.given.get(&id) {
-            graph.add(GivenWall(*given), (variable,), information(covariance))?;
+        } else {
+            for (given, covariance) in self.given.get(&id).into_iter().flatten() {
+                graph.add(GivenWall(*given), (variable,), information(covariance))?;
+            }
         }
         for (keyframe, measurement) in sightings {
             let expected = self.sensor.expected(&self.poses[*keyframe], wall);

@@ -3,7 +3,8 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel};
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
-    HeadingSensor, OdometryMotion, PoseSensor, PositionSensor, SensorWithHeadingDrift, SlamParams, WallLine,
+    HeadingDriftSensor, HeadingSensor, KnownIdAssociation, OdometryMotion, PoseSensor, PositionSensor,
+    SensorWithHeadingDrift, SlamParams, WallLine,
 };
 
 use super::*;
@@ -25,8 +26,12 @@ fn start() -> (EkfSlam<WallModel>, WallBatch) {
 }
 
 fn motion(increment: Pose2<f64>) -> RelativeMotion {
+    moved(DRIFT, increment)
+}
+
+fn moved(drift: f64, increment: Pose2<f64>) -> RelativeMotion {
     RelativeMotion::default()
-        .then(&OdometryMotion::default(), DRIFT, &increment)
+        .then(&OdometryMotion::default(), drift, &increment)
         .with_added_covariance(&(Matrix3::identity() * 1e-4))
 }
 
@@ -94,6 +99,36 @@ fn batch_of_a_linear_problem_is_the_filter() {
     }
 }
 
+/// A match of scans measures the drift, and a wall that is known with a covariance is seen: both are as the filter has them.
+#[test]
+fn batch_of_measured_drift_and_given_wall_is_the_filter() {
+    let (mut filter, _) = start();
+    let wall = Wall::between(WallLine::new(4.0, 0.0), [Vector2::new(4.0, 0.0), Vector2::new(4.0, 5.0)]);
+    let id = LandmarkId(7);
+    filter.insert(id, wall, Matrix2::new(4e-4, 0.0, 0.0, 1e-4)).expect("a wall");
+    let mut batch = WallBatch::new(&filter);
+
+    let before = filter.robot_covariance().m44;
+    let measured = DRIFT + 1e-4;
+    filter.update_robot(&HeadingDriftSensor(4e-5), &Vector1::new(measured)).expect("a drift");
+    batch.heading_drift_measured(measured, filter.robot_covariance().m44.recip() - before.recip());
+    let motion = moved(filter.robot().heading_drift, Pose2::new(0.5, 0.05, 0.2));
+    predict(&mut filter, &mut batch, &motion);
+
+    let predicted = filter.robot().pose;
+    let expected = filter.model().expected(filter.robot(), &wall);
+    let line = WallLine::new(expected.line.rho + 1e-4, expected.line.alpha - 1e-4);
+    let seen = [Observation { label: Some(id), measurement: WallMeasurement { line, ..expected } }];
+    let report = filter.update(&seen, &mut KnownIdAssociation).expect("a wall");
+    assert!(matches!(report.outcomes[0], ObservationOutcome::Accepted { .. }), "{:?}", report.outcomes);
+    batch.updated(&filter, &seen, &report);
+
+    let correction = predicted.local(&filter.robot().pose);
+    let of_batch = predicted.local(&solved(&filter, &mut batch));
+    assert!(correction.norm() > 1e-5, "{correction}");
+    assert_abs_diff_eq!(of_batch, correction, epsilon = 2e-7);
+}
+
 #[test]
 fn a_gross_outlier_moves_the_batch_little() {
     let anchor = Wall::between(WallLine::new(4.0, 0.0), [Vector2::new(4.0, 0.0), Vector2::new(4.0, 5.0)]);
@@ -125,4 +160,11 @@ fn a_run_that_is_too_long_frees_its_batch_and_says_so() {
     predict(&mut filter, &mut batch, &step);
     assert!(batch.0.is_none());
     assert!(batch.finish().expect_err("no batch").contains("20000 keyframes"));
+
+    let (filter, mut batch) = start();
+    let measurement = MapMeasurement::Heading(HeadingSensor { variance: 1.0 }, Angle::new(0.0));
+    for _ in 0..=MAX_BATCH_POSES {
+        batch.measured(&filter, &measurement, Pose2::identity());
+    }
+    assert!(batch.0.is_none());
 }
