@@ -3,8 +3,8 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel};
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
-    HeadingDriftSensor, HeadingSensor, KnownIdAssociation, OdometryMotion, PoseSensor, PositionSensor,
-    SensorWithHeadingDrift, SlamParams, WallLine,
+    HeadingDriftSensor, HeadingSensor, KnownIdAssociation, LandmarkMerge, OdometryMotion, PoseSensor,
+    PositionSensor, SensorWithHeadingDrift, SlamParams, WallLine,
 };
 
 use super::*;
@@ -127,6 +127,42 @@ fn batch_of_measured_drift_and_given_wall_is_the_filter() {
     let of_batch = predicted.local(&solved(&filter, &mut batch));
     assert!(correction.norm() > 1e-5, "{correction}");
     assert_abs_diff_eq!(of_batch, correction, epsilon = 2e-7);
+}
+
+/// What becomes of the sightings and the prior of a wall when it is merged, restarted or fixed.
+#[test]
+fn sightings_follow_the_walls_of_the_filter() {
+    let (mut filter, _) = start();
+    let wall = Wall::between(WallLine::new(4.0, 0.0), [Vector2::new(4.0, 0.0), Vector2::new(4.0, 5.0)]);
+    let [kept, removed] = [LandmarkId(1), LandmarkId(2)];
+    for id in [kept, removed] {
+        filter.insert(id, wall, Matrix2::identity() * 1e-4).expect("a wall");
+    }
+    let mut batch = WallBatch::new(&filter);
+    let measurement = filter.model().expected(filter.robot(), &wall);
+    let seen = [kept, removed].map(|id| Observation { label: Some(id), measurement });
+    let report = filter.update(&seen, &mut KnownIdAssociation).expect("two walls");
+    batch.updated(&filter, &seen, &report);
+    let counts = |batch: &WallBatch| {
+        let problem = batch.0.as_ref().expect("a problem");
+        let of_kept = (problem.seen.get(&kept).map(Vec::len), problem.given.get(&kept).map(Vec::len));
+        (of_kept, problem.seen.contains_key(&removed) || problem.given.contains_key(&removed))
+    };
+    assert_eq!(counts(&batch), ((Some(1), Some(1)), true));
+
+    filter.remove(removed);
+    let merged = UpdateReport { outcomes: Vec::new(), merges: vec![LandmarkMerge { kept, removed }] };
+    batch.updated(&filter, &[], &merged);
+    assert_eq!(counts(&batch), ((Some(2), Some(2)), false));
+
+    let restarted = ObservationOutcome::Restarted { landmark: kept };
+    let restarted = UpdateReport { outcomes: vec![restarted], merges: Vec::new() };
+    batch.updated(&filter, &seen[..1], &restarted);
+    assert_eq!(counts(&batch), ((Some(1), None), false));
+
+    assert!(filter.fix(kept));
+    batch.updated(&filter, &[], &UpdateReport { outcomes: Vec::new(), merges: Vec::new() });
+    assert_eq!(counts(&batch), ((None, None), false));
 }
 
 #[test]
