@@ -36,6 +36,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
                 let mut command = shell::command(programs.join(name), &[]);
                 shell::check(&mut command).with_context(|| format!("example {name} of {package}"))?;
                 n_run += 1;
+            } else if !args.is_empty() {
+                bail!("example {name} takes arguments: {command}");
             }
         }
     }

@@ -39,12 +39,12 @@ where
                 return Ok(());
             }
         }
-        let moved = self.filter.robot().pose().compose(&motion);
+        let before = *self.filter.robot().pose();
         match self.filter.update_moved(measurement, motion, covariance) {
             Ok(innovation) => {
                 self.record_robot(&innovation.jacobian, &innovation.covariance);
                 if let Some(follower) = &mut self.follower {
-                    let measurement = measurement.with_motion_noise(&moved, &covariance);
+                    let measurement = measurement.with_motion_noise(&before, motion, covariance);
                     follower.measured(&self.filter, &measurement, motion);
                 }
                 self.events.count("measurement_accepted");

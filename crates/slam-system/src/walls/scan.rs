@@ -73,7 +73,7 @@ impl PlacedScan {
     }
 }
 
-/// Half the width of a search band, standard deviations. [Andrade-Cetto 2005, Fig. 1]
+/// Half the width of a search band, standard deviations. [Andrade-Cetto 2005, Fig. 1a]
 const BAND_SIGMAS: f64 = 2.0;
 
 impl WallSlamFrontEnd {

@@ -1,5 +1,5 @@
 use nalgebra::{DefaultAllocator, Matrix3, Vector2};
-use wayfix_estimation_traits::{Angle, Pose2, SensorModel};
+use wayfix_estimation_traits::{Angle, LieGroup, Pose2, SensorModel};
 
 use super::{HeadingSensor, MovedSensor, PlanarRobot, PoseSensor, PositionSensor};
 use crate::{
@@ -19,21 +19,31 @@ pub enum MapMeasurement {
 }
 
 impl MapMeasurement {
-    /// The same with noise $`R + H Q H^T`$, at a `pose` in the map that a motion led to. $`Q`$ is the covariance of the motion in the body frame at its end: see [`MovedSensor`].
-    pub fn with_motion_noise(self, pose: &Pose2<f64>, covariance: &Matrix3<f64>) -> Self {
+    /// The same with the noise of [`MovedSensor`]: $`R + H Q H^T`$ after a `motion` from `pose`. $`Q`$ is the `covariance` of the motion.
+    ///
+    /// ```
+    /// # use wayfix_estimation_traits::{Angle, Pose2, nalgebra::Matrix3};
+    /// # use wayfix_slam_ekf::{HeadingSensor, MapMeasurement};
+    /// let compass = MapMeasurement::Heading(HeadingSensor { variance: 0.01 }, Angle::new(0.5));
+    /// let (pose, motion) = (Pose2::new(1.0, 2.0, 0.3), Pose2::new(0.4, 0.0, 0.2));
+    /// let covariance = Matrix3::from_diagonal_element(0.03);
+    /// let expected = MapMeasurement::Heading(HeadingSensor { variance: 0.04 }, Angle::new(0.5));
+    /// assert_eq!(compass.with_motion_noise(&pose, motion, covariance), expected);
+    /// ```
+    pub fn with_motion_noise(self, pose: &Pose2<f64>, motion: Pose2<f64>, covariance: Matrix3<f64>) -> Self {
         match self {
             Self::Position(sensor, measured) => {
-                let jacobian = sensor.jacobian(pose);
-                let added = jacobian * covariance * jacobian.transpose();
-                Self::Position(PositionSensor { covariance: sensor.covariance + added, ..sensor }, measured)
+                let covariance = MovedSensor { sensor, motion, covariance }.noise(pose);
+                Self::Position(PositionSensor { covariance, ..sensor }, measured)
             }
             Self::Heading(sensor, measured) => {
-                Self::Heading(HeadingSensor { variance: sensor.variance + covariance.m33 }, measured)
+                let variance = MovedSensor { sensor, motion, covariance }.noise(pose).x;
+                Self::Heading(HeadingSensor { variance }, measured)
             }
             Self::Pose(sensor, measured) => {
-                let to_map = pose.rotation_matrix().to_homogeneous();
-                let added = to_map * covariance * to_map.transpose();
-                Self::Pose(PoseSensor { covariance: sensor.covariance + added }, measured)
+                let in_body = MovedSensor { sensor, motion, covariance }.noise(pose);
+                let to_map = pose.compose(&motion).rotation_matrix().to_homogeneous();
+                Self::Pose(PoseSensor { covariance: to_map * in_body * to_map.transpose() }, measured)
             }
         }
     }

@@ -2,7 +2,10 @@
 
 mod residuals;
 
-use std::{collections::BTreeMap, time::Duration};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    time::Duration,
+};
 
 use nalgebra::{Matrix1, Matrix2, Matrix3, Matrix4, SMatrix, Vector1, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2, SensorModel};
@@ -46,7 +49,7 @@ struct WallProblem {
     seen: BTreeMap<LandmarkId, Vec<(usize, WallMeasurement)>>,
     /// The filter's walls, where the batch starts.
     walls: BTreeMap<LandmarkId, Wall>,
-    anchors: BTreeMap<LandmarkId, Wall>,
+    anchors: BTreeSet<LandmarkId>,
     /// Walls that the user knows, with their covariances; they are independent of each other and of the start.
     given: BTreeMap<LandmarkId, Vec<(Wall, Matrix2<f64>)>>,
     /// Measurements of the pose after a motion from a keyframe. Their noise includes that motion's, which counts once more in the motion to the next keyframe, as in
@@ -59,9 +62,7 @@ struct WallProblem {
 impl WallBatch {
     /// A batch that begins where the filter is, with the walls that it has.
     pub(super) fn new(filter: &EkfSlam<WallModel>) -> Self {
-        let given = filter.landmarks().map(|wall| (wall.id, vec![(wall.mean, wall.covariance)]));
-        let given: BTreeMap<_, _> =
-            given.filter(|(id, _)| filter.anchors().all(|(anchor, _)| anchor != *id)).collect();
+        let walls = filter.landmarks().map(|wall| (wall.id, wall.mean));
         Self(Some(WallProblem {
             sensor: filter.model().0,
             start: *filter.robot(),
@@ -71,9 +72,9 @@ impl WallBatch {
             drift_information: 0.0,
             drift_information_vector: 0.0,
             seen: BTreeMap::new(),
-            walls: filter.landmarks().map(|wall| (wall.id, wall.mean)).collect(),
-            anchors: filter.anchors().map(|(id, wall)| (id, *wall)).collect(),
-            given,
+            walls: walls.chain(filter.anchors().map(|(id, wall)| (id, *wall))).collect(),
+            anchors: filter.anchors().map(|(id, _)| id).collect(),
+            given: filter.landmarks().map(|wall| (wall.id, vec![(wall.mean, wall.covariance)])).collect(),
             measured: Vec::new(),
             estimates: Decimated::new(MOST_ESTIMATES),
         }))
@@ -157,7 +158,7 @@ impl WallProblem {
         self.seen.retain(|id, _| filter.contains(*id));
         self.walls.retain(|id, _| filter.contains(*id));
         for (id, wall) in filter.anchors() {
-            if self.anchors.insert(id, *wall).is_none() {
+            if self.anchors.insert(id) {
                 self.seen.remove(&id); // its place is conditional on them already
             }
             self.walls.insert(id, *wall);
@@ -195,7 +196,7 @@ impl WallProblem {
     ) -> Result<(), SmootherError> {
         let Some(wall) = self.walls.get(&id) else { return Ok(()) };
         let variable = graph.add_variable(*wall);
-        if self.anchors.contains_key(&id) {
+        if self.anchors.contains(&id) {
             graph.fix(variable)?;
         } else {
             for (given, covariance) in self.given.get(&id).into_iter().flatten() {

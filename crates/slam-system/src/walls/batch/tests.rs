@@ -49,10 +49,9 @@ fn measure(
     measurement: MapMeasurement,
     rest: &RelativeMotion,
 ) {
-    let covariance = rest.covariance;
-    let moved = filter.robot().pose.compose(&rest.motion);
-    filter.update_moved(&measurement, rest.motion, covariance).expect("a measurement");
-    batch.measured(filter, &measurement.with_motion_noise(&moved, &covariance), rest.motion);
+    let noisy = measurement.with_motion_noise(&filter.robot().pose, rest.motion, rest.covariance);
+    filter.update_moved(&measurement, rest.motion, rest.covariance).expect("a measurement");
+    batch.measured(filter, &noisy, rest.motion);
 }
 
 /// The batch's pose at the newest keyframe.
@@ -169,10 +168,9 @@ fn sightings_follow_the_walls_of_the_filter() {
 fn a_gross_outlier_moves_the_batch_little() {
     let anchor = Wall::between(WallLine::new(4.0, 0.0), [Vector2::new(4.0, 0.0), Vector2::new(4.0, 5.0)]);
     let solve = |outlier: f64| {
-        let (mut filter, mut batch) = start();
+        let (mut filter, _) = start();
         filter.add_anchor(LandmarkId(7), anchor).expect("an anchor");
-        batch.0.as_mut().expect("a problem").anchors.insert(LandmarkId(7), anchor);
-        batch.0.as_mut().expect("a problem").walls.insert(LandmarkId(7), anchor);
+        let mut batch = WallBatch::new(&filter);
         let seen = filter.model().expected(filter.robot(), &anchor);
         let measurement =
             WallMeasurement { line: WallLine::new(seen.line.rho + outlier, seen.line.alpha), ..seen };
