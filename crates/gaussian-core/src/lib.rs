@@ -54,5 +54,5 @@ pub use mixture::{GaussianMixture, log_sum_exp};
 #[cfg(feature = "sampling")]
 pub use sampling::{GaussianMotionSampler, GaussianSampler};
 pub use sigma::sigma_points::{SigmaPoints, UnscentedParams};
-pub use sigma::unscented::{UnscentedTransform, weighted_moments};
+pub use sigma::unscented::{SigmaDeviation, UnscentedTransform, weighted_moments};
 pub use sigma::weighted_mean::weighted_mean;

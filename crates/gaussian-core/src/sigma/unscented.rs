@@ -6,18 +6,29 @@ use crate::{
     sigma::weighted_mean::weighted_mean_near, symmetrize, weighted_mean,
 };
 
-/// The unscented transform of a Gaussian under a function.
+/// The unscented transform of a Gaussian under a function: the sigma points and their images, as deviations from their means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnscentedTransform<X: Manifold, Z: Manifold>
 where
     DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {
-    /// Mean of $`f(x)`$.
-    pub mean: Z,
-    /// Covariance of $`f(x)`$ at its mean; singular when $`f`$ maps into fewer dimensions than it shows. Add noise before you invert it.
-    pub covariance: TangentMatrix<Z>,
-    /// $`\mathrm{cov}(x, f(x))`$: `dim X × dim Z`.
-    pub cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
+    mean: Z,
+    n_states: X::Dim,
+    deviations: Vec<SigmaDeviation<X, Z>>,
+}
+
+/// A sigma point and its image, as deviations from their means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SigmaDeviation<X: Manifold, Z: Manifold>
+where
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
+{
+    /// Its weight in a covariance.
+    pub weight: X::Scalar,
+    /// Of the sigma point.
+    pub state: Tangent<X>,
+    /// Of the image.
+    pub image: Tangent<Z>,
 }
 
 impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> UnscentedTransform<X, Z>
@@ -34,7 +45,7 @@ where
     /// let point = Gaussian::from_sigmas(Vector2::new(0.0, 10.0), &Vector2::new(1.0, 1.0))?;
     /// let range = |p: &Vector2<f64>| Vector1::new(p.norm());
     /// let transformed = UnscentedTransform::new(&point, range, &UnscentedParams::default())?;
-    /// assert!(transformed.mean[0] > 10.04); // the bend of the circle: 10 + σ²/2r, where a linearization says 10
+    /// assert!(transformed.mean()[0] > 10.04); // the bend of the circle: 10 + σ²/2r, where a linearization says 10
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -47,17 +58,56 @@ where
     ) -> Result<Self, IterationError<Z>> {
         let sigma = SigmaPoints::new(gaussian, params)?;
         let images: Vec<Z> = sigma.points.iter().map(function).collect();
-        let mean = weighted_mean_near(&images[0], &images, &sigma.mean_weights)?; // the centre's image
-        let mut covariance = OMatrix::zeros_generic(mean.dim(), mean.dim());
-        let mut cross_covariance = OMatrix::zeros_generic(gaussian.dim(), mean.dim());
-        for ((point, image), &weight) in sigma.points.iter().zip(&images).zip(&sigma.covariance_weights) {
-            let deviation: Tangent<Z> = mean.local(image);
-            let share = nalgebra::convert::<f64, X::Scalar>(weight);
-            covariance.ger(share, &deviation, &deviation, nalgebra::one());
-            cross_covariance.ger(share, &gaussian.mean().local(point), &deviation, nalgebra::one());
+        Self::from_images(gaussian, &sigma, &images)
+    }
+
+    /// The same from images of the sigma points that exist already.
+    ///
+    /// # Errors
+    /// Those of [`weighted_mean`], which returns its last estimate.
+    pub fn from_images(
+        gaussian: &Gaussian<X>,
+        sigma: &SigmaPoints<X>,
+        images: &[Z],
+    ) -> Result<Self, IterationError<Z>> {
+        let centre = images.first().ok_or(GaussianError::Empty { what: "points" })?;
+        let mean = weighted_mean_near(centre, images, &sigma.mean_weights)?;
+        let points = sigma.points.iter().zip(images).zip(&sigma.covariance_weights);
+        let deviations = points.map(|((point, image), &weight)| SigmaDeviation {
+            weight: nalgebra::convert(weight),
+            state: gaussian.mean().local(point),
+            image: mean.local(image),
+        });
+        Ok(Self { deviations: deviations.collect(), n_states: gaussian.dim(), mean })
+    }
+
+    /// Mean of $`f(x)`$.
+    pub fn mean(&self) -> &Z {
+        &self.mean
+    }
+
+    /// The sigma points with their images.
+    pub fn deviations(&self) -> &[SigmaDeviation<X, Z>] {
+        &self.deviations
+    }
+
+    /// Covariance of $`f(x)`$ at its mean; singular when $`f`$ maps into fewer dimensions than it shows. Add noise before you invert it.
+    pub fn covariance(&self) -> TangentMatrix<Z> {
+        let mut covariance = OMatrix::zeros_generic(self.mean.dim(), self.mean.dim());
+        for SigmaDeviation { weight, image, .. } in &self.deviations {
+            covariance.ger(*weight, image, image, nalgebra::one());
         }
         symmetrize(&mut covariance);
-        Ok(Self { mean, covariance, cross_covariance })
+        covariance
+    }
+
+    /// $`\mathrm{cov}(x, f(x))`$: `dim X × dim Z`.
+    pub fn cross_covariance(&self) -> OMatrix<X::Scalar, X::Dim, Z::Dim> {
+        let mut cross_covariance = OMatrix::zeros_generic(self.n_states, self.mean.dim());
+        for SigmaDeviation { weight, state, image } in &self.deviations {
+            cross_covariance.ger(*weight, state, image, nalgebra::one());
+        }
+        cross_covariance
     }
 }
 
@@ -110,9 +160,9 @@ mod tests {
             let wide =
                 Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.3), &Vector3::new(0.1, 0.1, sigma)).unwrap();
             let same = UnscentedTransform::new(&wide, Pose2::clone, &UnscentedParams::default()).unwrap();
-            let heading: f64 = same.mean.heading();
+            let heading: f64 = same.mean().heading();
             assert!(abs_diff_eq!(heading, 0.3, epsilon = 1e-9), "{sigma}: {heading}");
-            let found: f64 = same.covariance.m33;
+            let found: f64 = same.covariance().m33;
             assert!(abs_diff_eq!(found.sqrt(), sigma, epsilon = 1e-9), "{sigma}: {found}");
         }
     }

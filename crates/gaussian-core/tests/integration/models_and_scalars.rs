@@ -103,7 +103,7 @@ fn single_precision_follows_double() {
     assert!(close(f64::from(c32.gaussian.covariance().trace()), c64.gaussian.covariance().trace()));
     let bearing = |pose: &Pose2<f32>| Angle::new(pose.heading());
     let transformed = UnscentedTransform::new(&narrow[0], bearing, &UnscentedParams::default()).unwrap();
-    assert!(close(f64::from(transformed.covariance[(0, 0)]), 0.0025));
+    assert!(close(f64::from(transformed.covariance()[(0, 0)]), 0.0025));
     let by_jacobian = narrow[0].linearized(bearing, &RowVector3::new(0.0, 0.0, 1.0)).unwrap();
     assert!(close(f64::from(by_jacobian.covariance()[(0, 0)]), 0.0025));
 }

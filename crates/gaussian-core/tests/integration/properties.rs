@@ -80,9 +80,9 @@ proptest! {
         let a = SMatrix::<f64, 2, 3>::from_row_slice(&entries);
         let params = UnscentedParams { alpha, ..UnscentedParams::default() };
         let transformed = UnscentedTransform::new(&g, |x: &Vector3<f64>| a * x, &params).unwrap();
-        assert_abs_diff_eq!(transformed.mean, a * g.mean(), epsilon = 1e-11);
-        assert_abs_diff_eq!(transformed.covariance, a * g.covariance() * a.transpose(), epsilon = 1e-10);
-        assert_abs_diff_eq!(transformed.cross_covariance, g.covariance() * a.transpose(), epsilon = 1e-10);
+        assert_abs_diff_eq!(*transformed.mean(), a * g.mean(), epsilon = 1e-11);
+        assert_abs_diff_eq!(transformed.covariance(), a * g.covariance() * a.transpose(), epsilon = 1e-10);
+        assert_abs_diff_eq!(transformed.cross_covariance(), g.covariance() * a.transpose(), epsilon = 1e-10);
     }
 
     #[test]

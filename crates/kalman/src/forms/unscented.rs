@@ -2,7 +2,9 @@ use nalgebra::{DefaultAllocator, Dim, OMatrix};
 use wayfix_estimation_traits::{
     Manifold, MotionModel, SensorModel, StateAlloc, Tangent, TangentMatrix, UpdateAlloc,
 };
-use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
+use wayfix_gaussian_core::{
+    Gaussian, SigmaDeviation, SigmaPoints, UnscentedParams, UnscentedTransform, symmetrize,
+};
 
 use crate::{
     ExtendedKalmanAlgorithm, Innovation, KalmanAlgorithm, algebra::transport::gaussian_at, check,
@@ -35,20 +37,17 @@ where
     where
         M: MotionModel<State = X>,
     {
-        let sigma = SigmaPoints::new(belief, &self.params)?;
-        let images: Vec<X> = sigma.points.iter().map(|point| motion.propagate(point, control)).collect();
-        for image in &images {
-            check::difference("predicted sigma point", belief.mean(), image)?;
-        }
-        let mean = weighted_mean(&images, &sigma.mean_weights)?;
-        let mut covariance = motion.noise(belief.mean(), control);
-        check::motion_noise(&covariance, belief.mean().dim().value())?;
-        for (image, &weight) in images.iter().zip(&sigma.covariance_weights) {
-            add_outer::<X>(&mut covariance, weight, &mean.local(image));
-        }
+        let noise = motion.noise(belief.mean(), control);
+        check::motion_noise(&noise, belief.mean().dim().value())?;
+        let predicted = self.transform(
+            belief,
+            |state| motion.propagate(state, control),
+            |image| check::difference("predicted sigma point", belief.mean(), image),
+        )?;
+        let mut covariance = predicted.covariance() + noise;
         symmetrize(&mut covariance);
         check::positive_definite("predicted", &covariance)?;
-        Ok(Gaussian::from_parts_unchecked(mean, covariance))
+        Ok(Gaussian::from_parts_unchecked(predicted.mean().clone(), covariance))
     }
 
     fn update<S>(
@@ -64,84 +63,59 @@ where
     {
         let noise = sensor.noise(belief.mean());
         check::sensor_noise(&noise, measurement.dim().value())?;
-        let spread = Spread::new(belief, sensor, measurement, &self.params)?;
-        let residual = check::difference("measurement", &spread.expected, measurement)?;
-        let innovation = spread.innovation(residual, &noise)?;
+        let predicted = self.transform(
+            belief,
+            |state| sensor.expected(state),
+            |image| check::difference("measurement", image, measurement),
+        )?;
+        let residual = check::difference("measurement", predicted.mean(), measurement)?;
+        let mut covariance = predicted.covariance() + &noise;
+        symmetrize(&mut covariance);
+        let innovation = Innovation::new(residual, covariance, predicted.cross_covariance())?;
         if !admits(&innovation) {
             return Ok((innovation, None));
         }
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
-        let covariance = spread.remaining(&gain, &noise);
+        let covariance = remaining(&predicted, &gain, &noise);
         Ok((innovation, Some(gaussian_at("posterior", mean, belief.mean(), covariance)?)))
     }
 }
 
-/// Sigma points and their predicted measurements, as deviations from their means.
-struct Spread<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
-where
-    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
-{
-    expected: Z,
-    deviations: Vec<(f64, Tangent<X>, Tangent<Z>)>,
-    origin: X,
-}
-
-impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> Spread<X, Z>
-where
-    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
-{
-    fn new<S>(belief: &Gaussian<X>, sensor: &S, measurement: &Z, params: &UnscentedParams) -> Checked<Self>
-    where
-        S: SensorModel<State = X, Measurement = Z>,
-    {
-        let sigma = SigmaPoints::new(belief, params)?;
-        let images: Vec<Z> = sigma.points.iter().map(|point| sensor.expected(point)).collect();
-        for image in &images {
-            check::difference("measurement", image, measurement)?;
-        }
-        let expected = weighted_mean(&images, &sigma.mean_weights)?;
-        let deviations = sigma
-            .points
-            .iter()
-            .zip(&images)
-            .zip(&sigma.covariance_weights)
-            .map(|((point, image), &weight)| (weight, belief.mean().local(point), expected.local(image)))
-            .collect();
-        Ok(Self { expected, deviations, origin: belief.mean().clone() })
-    }
-
-    /// $`S = \sum w ζ ζ^T + R,\; C = \sum w χ ζ^T`$.
-    fn innovation(&self, residual: Tangent<Z>, noise: &TangentMatrix<Z>) -> Checked<Innovation<X, Z>> {
-        let mut covariance = noise.clone();
-        let mut cross_covariance = OMatrix::zeros_generic(self.origin.dim(), self.expected.dim());
-        for (weight, state, seen) in &self.deviations {
-            add_outer::<Z>(&mut covariance, *weight, seen);
-            cross_covariance.ger(nalgebra::convert::<f64, X::Scalar>(*weight), state, seen, nalgebra::one());
-        }
-        symmetrize(&mut covariance);
-        Innovation::new(residual, covariance, cross_covariance)
-    }
-
-    /// $`\sum w (χ - K ζ)(χ - K ζ)^T + K R K^T`$.
-    fn remaining(
+impl UnscentedKalmanAlgorithm {
+    /// The unscented transform under `function`, whose images pass a check.
+    fn transform<X: Manifold, Z: Manifold<Scalar = X::Scalar>>(
         &self,
-        gain: &OMatrix<X::Scalar, X::Dim, Z::Dim>,
-        noise: &TangentMatrix<Z>,
-    ) -> TangentMatrix<X> {
-        let mut covariance = gain * noise * gain.transpose();
-        for (weight, state, seen) in &self.deviations {
-            add_outer::<X>(&mut covariance, *weight, &(state - gain * seen));
+        belief: &Gaussian<X>,
+        function: impl Fn(&X) -> Z,
+        check: impl Fn(&Z) -> Checked<Tangent<Z>>,
+    ) -> Checked<UnscentedTransform<X, Z>>
+    where
+        DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
+    {
+        let sigma = SigmaPoints::new(belief, &self.params)?;
+        let images: Vec<Z> = sigma.points.iter().map(function).collect();
+        for image in &images {
+            check(image)?;
         }
-        symmetrize(&mut covariance);
-        covariance
+        Ok(UnscentedTransform::from_images(belief, &sigma, &images)?)
     }
 }
 
-/// Adds $`w v v^T`$.
-fn add_outer<X: Manifold>(matrix: &mut TangentMatrix<X>, weight: f64, vector: &Tangent<X>)
+/// $`\sum w (χ - K ζ)(χ - K ζ)^T + K R K^T`$.
+fn remaining<X: Manifold, Z: Manifold<Scalar = X::Scalar>>(
+    predicted: &UnscentedTransform<X, Z>,
+    gain: &OMatrix<X::Scalar, X::Dim, Z::Dim>,
+    noise: &TangentMatrix<Z>,
+) -> TangentMatrix<X>
 where
-    DefaultAllocator: StateAlloc<X::Dim>,
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {
-    matrix.ger(nalgebra::convert(weight), vector, vector, nalgebra::one());
+    let mut covariance = gain * noise * gain.transpose();
+    for SigmaDeviation { weight, state, image } in predicted.deviations() {
+        let corrected = state - gain * image;
+        covariance.ger(*weight, &corrected, &corrected, nalgebra::one());
+    }
+    symmetrize(&mut covariance);
+    covariance
 }
