@@ -32,8 +32,8 @@ pub use model::{
     similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, LinearSearch, LowerBoundTable, LowerBoundedDistance, NoLowerBoundTable, ReferenceId,
-    ReferenceMatch, ReferenceSearch, SearchStatistics, ViewDescriptor, ViewDifference,
+    AppearanceIndex, LinearSearch, LowerBoundTable, LowerBoundedDistance, ReferenceId, ReferenceMatch,
+    ReferenceSearch, SearchStatistics, ViewDescriptor, ViewDifference, WithoutLowerBounds,
 };
 pub use state::{
     MixtureReductionParams, OdometryNoise, PoseHypothesis, propagate, separation_squared, simplify, unimodal,

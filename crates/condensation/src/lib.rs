@@ -2,7 +2,7 @@
 //!
 //! | part | what is in it |
 //! | --- | --- |
-//! | discrete filter | [`DiscreteFilter`] over any [`DiscreteStateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
+//! | discrete filter | [`DiscreteFilter`] over any [`DiscreteStateSpace`]: [`PositionGrid`], [`HeadingGrid`], your own; [`TransitionModel`]s, [`DiffusionKernel`] |
 //! | features | [`GlobalDescriptor`]: [`ColorMeanStdDescriptor`], [`Fft6Descriptor`], [`DominantGraysDescriptor`], [`IntensityRegionsDescriptor`], [`ConcatenatedDescriptor`], your own; all views of a scene at once |
 //! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteAppearanceModel`]; [`LearnedMotion`]; p-values |
 //! | normalization | from the whole scene: [`light_match`]; online: [`AppearanceLearningParams::online`] |
@@ -20,8 +20,8 @@ mod normalization;
 
 pub use discrete::{
     DenseTransition, DiffusionKernel, DiscreteFilter, DiscreteStateSpace, GridMove, HeadingGrid, LatticeAxis,
-    Maneuver, MeasurementEvidence, MeasurementOutcome, MostProbableState, PlaceGraph, PlaceGraphMove,
-    PositionGrid, SlipProbabilities, SparseTransition, StateLattice, TransitionModel,
+    Maneuver, MeasurementEvidence, MeasurementOutcome, MostProbableState, PositionGrid, SlipProbabilities,
+    SparseTransition, StateLattice, TransitionModel,
 };
 pub use error::CondensationError;
 pub use features::{

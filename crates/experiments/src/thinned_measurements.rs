@@ -23,7 +23,7 @@ impl ThinnedMeasurements {
     /// Parameters of a filter that takes the measurements.
     pub(crate) fn params(&self) -> ExternalParams {
         ExternalParams {
-            frames: self.every_s.iter().map(|_| topics::WORLD_FRAME.to_owned()).collect(),
+            map_frame_ids: self.every_s.iter().map(|_| topics::WORLD_FRAME.to_owned()).collect(),
             position_sigma: self.sigma_m,
             heading_sigma: self.heading_sigma_deg.map(f64::to_radians),
             ..ExternalParams::default()

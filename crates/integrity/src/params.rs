@@ -1,6 +1,6 @@
 use crate::error::{IntegrityError, check};
 
-/// Parameters of [`ShiryaevRobertsTest`](crate::ShiryaevRobertsTest) and [`RelocalizationTest`](crate::RelocalizationTest).
+/// Parameters of [`RelocalizationTest`](crate::RelocalizationTest).
 ///
 /// ```
 /// use wayfix_integrity::RelocalizationParams;

@@ -63,8 +63,8 @@ pub enum PlaceUpdateRule {
 /// # use wayfix_gaussian_core::Gaussian;
 /// # let view = |re: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![3, re, 0]);
 /// # let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
-/// let weight_of_first = |forgetting_uncertainty| -> Result<Option<f64>, AppearanceMapError> {
-///     let params = AppearanceMapParams { forgetting_uncertainty, ..Default::default() };
+/// let weight_of_first = |forgetting_uncertainty_kind| -> Result<Option<f64>, AppearanceMapError> {
+///     let params = AppearanceMapParams { forgetting_uncertainty_kind, ..Default::default() };
 ///     let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// #     map.scale_mut().add_near(ViewDifferenceSample { lag: 0.25, distance: 0.1 });
 ///     map.learn(view(20)?, &pose, &params, 16.3)?;
@@ -114,7 +114,7 @@ pub struct AppearanceMapParams {
     /// $`β_{for}`$: rate of active forgetting (Eq. 19). Default 0.6, twice $`β`$: a reference goes faster than it comes.
     pub forgetting_rate: f64,
     /// Default [`ForgettingUncertainty::AgainstPlace`].
-    pub forgetting_uncertainty: ForgettingUncertainty,
+    pub forgetting_uncertainty_kind: ForgettingUncertainty,
     /// Weight below which a place is removed. Default 0.05: a place that was seen once is removed after two mismatches at the very place.
     pub min_weight: f64,
     /// Count from which on a place does not become more rigid (Eq. 13). Default 20: the mean of 20 views has a quarter of
@@ -132,7 +132,7 @@ impl Default for AppearanceMapParams {
             place_update: PlaceUpdateRule::default(),
             forgetting_mode: ForgettingMode::default(),
             forgetting_rate: 0.6,
-            forgetting_uncertainty: ForgettingUncertainty::default(),
+            forgetting_uncertainty_kind: ForgettingUncertainty::default(),
             min_weight: 0.05,
             max_effective_observation_count: 20.0,
             max_references: 1_000_000,
@@ -146,7 +146,7 @@ impl AppearanceMapParams {
         Self {
             place_update: PlaceUpdateRule::Pose,
             max_effective_observation_count: f64::MAX,
-            forgetting_uncertainty: ForgettingUncertainty::Pose,
+            forgetting_uncertainty_kind: ForgettingUncertainty::Pose,
             ..Self::default()
         }
     }

@@ -43,7 +43,7 @@ pub(super) fn weight_when_missed(
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);
     let gain = 2.0 * scale.step();
-    let certainty = match params.forgetting_uncertainty {
+    let certainty = match params.forgetting_uncertainty_kind {
         ForgettingUncertainty::Pose => gain / map_sigmas(pose).sum(),
         ForgettingUncertainty::AgainstPlace => {
             let own = pose.sigmas().xy().norm_squared() - place.gaussian.sigmas().xy().norm_squared();

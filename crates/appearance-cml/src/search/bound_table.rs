@@ -32,17 +32,17 @@ pub trait LowerBoundTable<D: LowerBoundedDistance>: Clone + Debug + Default {
 /// Bounds nothing: for descriptors whose distance is as cheap as a bound.
 ///
 /// ```
-/// # use wayfix_appearance_cml::{LowerBoundTable, LowerBoundedDistance, NoLowerBoundTable, PanoramaDescriptor};
+/// # use wayfix_appearance_cml::{LowerBoundTable, LowerBoundedDistance, WithoutLowerBounds, PanoramaDescriptor};
 /// let probe = PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, 0])?.probe();
 /// // 0 is below every distance, and no reference is passed over.
-/// let bound = LowerBoundTable::<PanoramaDescriptor>::may_be_within(&NoLowerBoundTable, 0, &probe, 0.0);
+/// let bound = LowerBoundTable::<PanoramaDescriptor>::may_be_within(&WithoutLowerBounds, 0, &probe, 0.0);
 /// assert_eq!(bound, Some(0.0));
 /// # Ok::<(), wayfix_appearance_cml::AppearanceMapError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
-pub struct NoLowerBoundTable;
+pub struct WithoutLowerBounds;
 
-impl<D: LowerBoundedDistance> LowerBoundTable<D> for NoLowerBoundTable {
+impl<D: LowerBoundedDistance> LowerBoundTable<D> for WithoutLowerBounds {
     fn put(&mut self, _: usize, _: &D) {}
 
     fn may_be_within(&self, _: usize, _: &D::Probe, _: f64) -> Option<f64> {

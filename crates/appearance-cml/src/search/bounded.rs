@@ -6,7 +6,7 @@ use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, ViewDescriptor, NoLowerBoundTable};
+/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, ViewDescriptor, WithoutLowerBounds};
 /// /// A colour that is the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
@@ -17,7 +17,7 @@ use super::{LowerBoundTable, ViewDescriptor, ViewDifference};
 /// }
 /// impl LowerBoundedDistance for Grey {
 ///     type Probe = Grey;
-///     type Table = NoLowerBoundTable;
+///     type Table = WithoutLowerBounds;
 ///     fn probe(&self) -> Grey {
 ///         self.clone()
 ///     }

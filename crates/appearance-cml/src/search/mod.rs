@@ -8,7 +8,7 @@ mod linear;
 mod nearest;
 mod reference_search;
 
-pub use bound_table::{LowerBoundTable, NoLowerBoundTable};
+pub use bound_table::{LowerBoundTable, WithoutLowerBounds};
 pub use bounded::LowerBoundedDistance;
 pub use descriptor::{ViewDescriptor, ViewDifference};
 pub use index::{AppearanceIndex, SearchStatistics};

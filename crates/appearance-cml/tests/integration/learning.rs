@@ -124,8 +124,10 @@ fn published_uncertainty_is_along_the_axes_of_the_map() {
 
 #[test]
 fn error_of_a_place_does_not_slow_forgetting() {
-    let params =
-        AppearanceMapParams { forgetting_uncertainty: ForgettingUncertainty::AgainstPlace, ..published() };
+    let params = AppearanceMapParams {
+        forgetting_uncertainty_kind: ForgettingUncertainty::AgainstPlace,
+        ..published()
+    };
     // As uncertain as the place itself: at the full rate, b = 0.4 · (1 − 1/2).
     let alike = map_of(&[(0.0, 0.0), (3.0, 0.5)], &params);
     assert_abs_diff_eq!(weights(&alike)[0][0], 0.5 * 0.8, epsilon = 1e-12);

@@ -6,10 +6,10 @@ use crate::{CondensationError, DiscreteStateSpace};
 /// The number of actions from every state to a goal, if nothing goes wrong.
 ///
 /// ```
-/// use wayfix_condensation::{PlaceGraph, ShortestPathLengths};
-/// let one_way = PlaceGraph::new(3, &[(0, 1), (1, 2)])?;
-/// let routes = ShortestPathLengths::to_goal(&one_way, 1)?;
-/// assert_eq!((routes.distance(0), routes.distance(2)), (Some(1), None));
+/// use wayfix_condensation::{PositionGrid, ShortestPathLengths};
+/// let row = PositionGrid::new(3, 1)?;
+/// let routes = ShortestPathLengths::to_goal(&row, 1)?;
+/// assert_eq!((routes.distance(0), routes.distance(1)), (Some(1), Some(0)));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,10 +6,12 @@ use approx::{abs_diff_eq, assert_abs_diff_eq};
 use proptest::prelude::*;
 use wayfix_condensation::{
     CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, DiscreteStateSpace, GridMove,
-    HeadingGrid, MeasurementOutcome, PlaceGraph, PositionGrid, SlipProbabilities, StateLattice,
+    HeadingGrid, MeasurementOutcome, PositionGrid, SlipProbabilities, SparseTransition, StateLattice,
     TransitionModel,
 };
 use wayfix_integrity::CusumTest;
+
+use crate::common::place_graph::PlaceGraph;
 
 fn predicted(transition: &dyn TransitionModel, belief: &[f64]) -> Vec<f64> {
     let mut to = vec![f64::NAN; belief.len()];
@@ -142,7 +144,7 @@ fn belief_over_many_chunks_stays_a_distribution() {
 
 #[test]
 fn a_graph_diffuses_along_its_edges() {
-    let graph = PlaceGraph::new(3, &[(0, 1), (0, 2), (1, 0)]).unwrap();
+    let graph = PlaceGraph::new(3, &[(0, 1), (0, 2), (1, 0)]);
     assert_eq!(predicted(&graph.diffusion(0.5).unwrap(), &[1.0, 0.0, 0.0]), [0.5, 0.25, 0.25]);
     assert_eq!(predicted(&graph.diffusion(0.5).unwrap(), &[0.0, 0.0, 1.0]), [0.0, 0.0, 1.0]);
 }
@@ -155,7 +157,11 @@ fn bad_input_is_refused_and_changes_nothing() {
     );
     assert_eq!(DiscreteFilter::from_prior(vec![0.0; 3]), Err(CondensationError::ZeroBelief));
     assert!(matches!(DiscreteFilter::uniform(0), Err(CondensationError::Extent { .. })));
-    assert!(matches!(PlaceGraph::new(2, &[(0, 2)]), Err(CondensationError::State { state: 2, n_states: 2 })));
+    assert!(matches!(PlaceGraph::new(3, &[(0, 2)]).diffusion(1.5), Err(CondensationError::Parameter { .. })));
+    assert!(matches!(
+        SparseTransition::from_rows([vec![(2, 1.0)], vec![(0, 1.0)]]),
+        Err(CondensationError::State { state: 2, n_states: 2 })
+    ));
     assert!(matches!(PositionGrid::new(usize::MAX, 3), Err(CondensationError::Extent { .. })));
     assert!(DiffusionKernel::gaussian(&PositionGrid::new(3, 3).unwrap(), &[f64::NAN, 1.0]).is_err());
     assert!(

@@ -9,12 +9,11 @@ use std::sync::Arc;
 use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
     DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
-    NavigationOutcome, NavigationReport, Navigator, NavigatorParams, PlaceGraph, PlaceGraphMove, RgbImage,
-    SceneViews, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped,
-    shifted,
+    NavigationOutcome, NavigationReport, Navigator, NavigatorParams, RgbImage, SceneViews,
+    StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
 };
 
-use crate::common::{Drive, scene};
+use crate::common::{Drive, place_graph::PlaceGraph, scene};
 
 struct Trial {
     views: ViewGrid,
@@ -154,9 +153,9 @@ struct Walk {
     at: usize,
 }
 
-impl NavigationEnvironment<PlaceGraphMove> for Walk {
-    fn act(&mut self, action: PlaceGraphMove) {
-        self.at = self.graph.step(self.at, action);
+impl NavigationEnvironment<usize> for Walk {
+    fn act(&mut self, edge: usize) {
+        self.at = self.graph.step(self.at, edge);
     }
 
     fn observe(&mut self, features: &mut [f64]) {
@@ -166,7 +165,7 @@ impl NavigationEnvironment<PlaceGraphMove> for Walk {
 
 #[test]
 fn a_goal_without_a_way_is_unreachable() {
-    let graph = PlaceGraph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]).unwrap();
+    let graph = PlaceGraph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]);
     let places: Vec<Vec<f64>> = (0..4).map(|state| vec![10.0 * f64::from(state)]).collect();
     let appearance = Arc::new(
         AppearanceModel::from_spread(StateDescriptorTable::from_rows(&places).unwrap(), 0.1).unwrap(),

@@ -1,6 +1,8 @@
 use nalgebra::Vector2;
 use wayfix_estimation_traits::{Angle, Pose2};
 
+use crate::plot::statistics::median;
+
 /// The rigid motion that brings `estimated` points closest to their `true` partners in the least-squares sense.
 ///
 /// $`\min_{R,t} \sum_i ‖R e_i + t - p_i‖^2`$ in closed form: the rotation is the direction of the sum of dot and cross products about
@@ -46,10 +48,7 @@ pub fn median_distance(
     pairs: impl Iterator<Item = (Vector2<f64>, Vector2<f64>)>,
     motion: &Pose2<f64>,
 ) -> Option<f64> {
-    let mut distances: Vec<f64> =
-        pairs.map(|(estimated, truth)| (motion.transform(&estimated) - truth).norm()).collect();
-    distances.sort_by(f64::total_cmp);
-    distances.get(distances.len() / 2).copied()
+    median(pairs.map(|(estimated, truth)| (motion.transform(&estimated) - truth).norm()))
 }
 
 #[cfg(test)]

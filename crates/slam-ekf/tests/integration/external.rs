@@ -175,7 +175,7 @@ fn frame_datum_and_covariance_must_be_known() {
     assert_eq!(nothing.position(48.0, 11.0), Err(ExternalError::Datum));
     assert_eq!(nothing.covariance(None, true, false), Err(ExternalError::NoCovariance));
     let known = ExternalParams {
-        frames: vec!["map".to_owned()],
+        map_frame_ids: vec!["map".to_owned()],
         datum: Some([48.0, 11.0]),
         position_sigma: Some(2.0),
         heading_sigma: None,

@@ -56,7 +56,7 @@ fn slam(records: &[Record], external: ExternalParams) -> PointRun {
 }
 
 fn in_map() -> ExternalParams {
-    ExternalParams { frames: vec!["map".to_owned()], ..ExternalParams::default() }
+    ExternalParams { map_frame_ids: vec!["map".to_owned()], ..ExternalParams::default() }
 }
 
 #[test]

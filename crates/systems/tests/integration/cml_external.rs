@@ -32,7 +32,7 @@ fn localized(records: Vec<Record>) -> CmlRun {
 
 fn localized_by(records: Vec<Record>, localizer: LocalizerParams) -> CmlRun {
     let external = ExternalParams {
-        frames: vec!["map".to_owned(), topics::WORLD_FRAME.to_owned()],
+        map_frame_ids: vec!["map".to_owned(), topics::WORLD_FRAME.to_owned()],
         ..ExternalParams::default()
     };
     let mut params = CmlParams { external, localizer, ..CmlParams::default() };

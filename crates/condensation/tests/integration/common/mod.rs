@@ -1,5 +1,7 @@
 //! A painted scene, and a robot that sees it in another light.
 
+pub(crate) mod place_graph;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{

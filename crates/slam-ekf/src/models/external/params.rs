@@ -14,7 +14,7 @@ use crate::SlamError;
 )]
 pub struct ExternalParams {
     /// Names of frames that are the frame of the map; measurements in others are refused. `enu`: the x axis of the map points east.
-    pub frames: Vec<String>,
+    pub map_frame_ids: Vec<String>,
     /// Latitude and longitude of the origin of the map, whose x axis then points east, degrees; without it WGS 84 positions are refused.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub datum: Option<[f64; 2]>,
@@ -31,7 +31,7 @@ pub struct ExternalParams {
 #[non_exhaustive]
 pub enum ExternalError {
     /// It is in a frame that is not that of the map.
-    #[error("its frame {0:?} is not that of the map (`external.frames`)")]
+    #[error("its frame {0:?} is not that of the map (`external.map_frame_ids`)")]
     Frame(String),
     /// A WGS 84 position, and the map has no datum on earth.
     #[error("the map has no place on earth (`external.datum`)")]
@@ -50,7 +50,7 @@ pub enum ExternalError {
 impl ExternalParams {
     /// Whether any measurement is taken.
     pub fn is_on(&self) -> bool {
-        !self.frames.is_empty() || self.datum.is_some()
+        !self.map_frame_ids.is_empty() || self.datum.is_some()
     }
 
     /// Checks that sigmas are positive and that the datum is a place on earth.
@@ -82,7 +82,7 @@ impl ExternalParams {
     /// # Errors
     /// Returns [`ExternalError::Frame`] if the frame is not that of the map.
     pub fn check_frame(&self, frame: &str) -> Result<(), ExternalError> {
-        let is_of_map = self.frames.iter().any(|of_map| of_map == frame);
+        let is_of_map = self.map_frame_ids.iter().any(|of_map| of_map == frame);
         if is_of_map { Ok(()) } else { Err(ExternalError::Frame(frame.to_owned())) }
     }
 

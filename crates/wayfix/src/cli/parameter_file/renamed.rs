@@ -1,7 +1,7 @@
 //! Renamed parameters: an old parameter file gets a hint with the new name.
 
 /// Old name, new name. An old name may have several new ones.
-const RENAMED: [(&str, &str); 211] = [
+const RENAMED: [(&str, &str); 213] = [
     ("accept", "gate_nis"),
     ("accept_change_after", "accept_change_after_n_frames"),
     ("acquisition", "search"),
@@ -62,9 +62,11 @@ const RENAMED: [(&str, &str); 211] = [
     ("floor", "outlier_share"),
     ("forget_after", "accept_change_after_n_frames"),
     ("forgetting", "forgetting_mode"),
+    ("forgetting_uncertainty", "forgetting_uncertainty_kind"),
     ("forward", "forward_sigma_per_meter"),
     ("found_above", "found_above_quality"),
     ("found_from", "found_above_quality"),
+    ("frames", "map_frame_ids"),
     ("greatest_count", "max_effective_observation_count"),
     ("grey_share", "gray_channel_share"),
     ("heading", "heading_sigma"),
