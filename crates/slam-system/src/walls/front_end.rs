@@ -121,6 +121,10 @@ impl FrontEnd for WallSlamFrontEnd {
                 self.advance_to(record.stamp, estimator);
                 self.odometry.hold(record.stamp, *velocity)
             }
+            RecordData::Velocity(_) | RecordData::Ackermann(_) => {
+                estimator.events.count("second_odometry_source_ignored");
+                Ok(())
+            }
             RecordData::Scan(scan) => self.take_or_wait(record.stamp, scan, estimator),
             RecordData::LaserMount(mount) if self.laser_follows_log => {
                 self.current_laser_mount = Some(*mount);

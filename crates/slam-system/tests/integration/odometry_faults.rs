@@ -133,6 +133,25 @@ fn sound_odometry_says_nothing() {
     assert_eq!(said.map(|name| run.events().get(name)), [0; 4]);
 }
 
+/// A bag often has the odometry and the commands.
+#[test]
+fn motion_told_twice_moves_once() {
+    let mut records = drive(&every_step(), 0.0);
+    let mut once = run(&records, &WallSlamParams::default());
+    let commands = (0..N_STEPS).map(|step| {
+        at(10.0 + step as f64 * 0.1, RecordData::Velocity(Velocity { linear: 1.0, angular: 0.5 }))
+    });
+    records.extend(commands);
+    records.sort_by_key(|record| record.stamp);
+    let mut twice = run(&records, &WallSlamParams::default());
+    let second = |run: &mut WallRun| run.events().get("second_odometry_source_ignored");
+    assert_eq!((second(&mut once), second(&mut twice)), (0, N_STEPS as u64));
+    let last = |run: &WallRun| {
+        *run.system.stamped_estimates().last().map(|estimate| estimate.pose).as_ref().expect("scans")
+    };
+    assert_eq!(last(&once), last(&twice));
+}
+
 #[test]
 fn odometry_that_ends_early_is_said() {
     let mut run = run(&drive(&every_step()[..N_STEPS / 2], 0.0), &WallSlamParams::default());
