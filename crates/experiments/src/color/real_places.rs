@@ -22,7 +22,8 @@ const MAX_HEADING_ERROR: f64 = PI / 30.0;
 
 /// Localization of a standing robot at places of a real field, from near and from anywhere: bags `bags/PLACE`, `field.toml` and `priors-red1.json` in `folder`.
 ///
-/// Each bag runs twice in a row. The field is symmetric by half a turn, but for the landmarks. Shares are of all runs, at the last image.
+/// Each bag runs twice in a row. The field is symmetric by half a turn, but for the landmarks. Shares are of all runs, at the last image; those `after_one_turn` are at the last
+/// image of the first turn.
 ///
 /// # Errors
 /// Returns an error if a file is missing, or no image of a bag can be used.
@@ -43,8 +44,9 @@ pub(crate) fn real_places(
         let runs: Vec<(&String, u64)> =
             places.iter().flat_map(|place| seeds.iter().map(move |seed| (place, *seed))).collect();
         let outcomes = runs.par_iter().map(|(place, seed)| {
-            let records = twice(folder.join("bags").join(place).as_path()).context(place.to_string())?;
-            field.localize(&records, start, *seed).context(place.to_string())
+            let (records, n_images) =
+                twice(folder.join("bags").join(place).as_path()).context(place.to_string())?;
+            field.localize((&records, n_images), start, *seed).context(place.to_string())
         });
         metrics.extend(summary(name, &outcomes.collect::<Result<Vec<_>>>()?));
     }
@@ -57,27 +59,41 @@ struct Field {
     params: ColorSystemParams,
 }
 
-/// A run at a place.
-struct Outcome {
+/// A pose against the true one.
+struct Place {
     is_right: bool,
     /// Right after half a turn of the field.
     is_mirrored: bool,
+}
+
+/// A run at a place.
+struct Outcome {
+    /// Where it ends after each turn of the bag.
+    places: [Place; 2],
     n_false_tracking_frames: usize,
     /// Those that half a turn of the field does not make right.
     n_false_tracking_frames_modulo_symmetry: usize,
 }
 
 impl Field {
-    fn localize(&self, records: &[Record], start: Option<StartPose>, seed: u64) -> Result<Outcome> {
+    fn localize(
+        &self,
+        (records, n_images): (&[Record], usize),
+        start: Option<StartPose>,
+        seed: u64,
+    ) -> Result<Outcome> {
         let setup = ColorRunSetup { start, ..ColorRunSetup::new(&self.map, &self.bank, &self.params, seed) };
         let run = run(records, setup, |_| {})?;
         let samples = run.samples();
-        let (_, last) = samples.last().context("the bag has no true pose at its last image")?;
+        let at = |number: usize| {
+            let (_, sample) = samples.get(number).context("the bag has no true pose at its last image")?;
+            anyhow::Ok(Place { is_right: is_right(sample), is_mirrored: is_mirrored(sample) })
+        };
+        let places = [at(n_images - 1)?, at(samples.len().saturating_sub(1))?];
         let tracking = samples.iter().filter(|(frame, _)| frame.status == LocalizationStatus::Tracking);
         let false_poses: Vec<_> = tracking.map(|(_, at)| at).filter(|at| !is_right(at)).collect();
         Ok(Outcome {
-            is_right: is_right(last),
-            is_mirrored: is_mirrored(last),
+            places,
             n_false_tracking_frames: false_poses.len(),
             n_false_tracking_frames_modulo_symmetry: false_poses.iter().filter(|at| !is_mirrored(at)).count(),
         })
@@ -100,14 +116,17 @@ fn summary(start: &str, outcomes: &[Outcome]) -> Vec<Metric> {
     let share =
         |holds: &dyn Fn(&Outcome) -> bool| outcomes.iter().filter(|one| holds(one)).count() as f64 / n;
     let most = |number: fn(&Outcome) -> usize| outcomes.iter().map(number).max().unwrap_or(0) as f64;
-    vec![
-        Metric::new(format!("{start}_n_runs"), n, ""),
-        Metric::new(format!("{start}_right_share"), share(&|one| one.is_right), ""),
-        Metric::new(
-            format!("{start}_right_share_modulo_symmetry"),
-            share(&|one| one.is_right || one.is_mirrored),
-            "",
-        ),
+    let shares = ["_after_one_turn", ""].into_iter().enumerate().flat_map(|(turn, when)| {
+        let right = share(&|one| one.places[turn].is_right);
+        let modulo_symmetry = share(&|one| one.places[turn].is_right || one.places[turn].is_mirrored);
+        [
+            Metric::new(format!("{start}_right_share{when}"), right, ""),
+            Metric::new(format!("{start}_right_share_modulo_symmetry{when}"), modulo_symmetry, ""),
+        ]
+    });
+    let mut metrics = vec![Metric::new(format!("{start}_n_runs"), n, "")];
+    metrics.extend(shares);
+    metrics.extend([
         Metric::new(
             format!("{start}_n_false_tracking_frames_worst"),
             most(|one| one.n_false_tracking_frames),
@@ -118,11 +137,12 @@ fn summary(start: &str, outcomes: &[Outcome]) -> Vec<Metric> {
             most(|one| one.n_false_tracking_frames_modulo_symmetry),
             "",
         ),
-    ]
+    ]);
+    metrics
 }
 
-/// The records of a bag, and again after them.
-fn twice(bag: &Path) -> Result<Vec<Record>> {
+/// The records of a bag, and again after them, with the number of images of a turn.
+fn twice(bag: &Path) -> Result<(Vec<Record>, usize)> {
     let (mut records, _) = wayfix_sensor_log::open(bag, &LogOpenOptions::default())?.read_all();
     let images: Vec<Stamp> = records
         .iter()
@@ -139,5 +159,5 @@ fn twice(bag: &Path) -> Result<Vec<Record>> {
     };
     records.extend(records.iter().map(later).collect::<Vec<_>>());
     records.sort_by_key(|record| record.stamp);
-    Ok(records)
+    Ok((records, images.len()))
 }

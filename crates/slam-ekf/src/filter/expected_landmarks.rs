@@ -40,6 +40,11 @@ where
         self.predicted.is_empty()
     }
 
+    /// Their predicted measurements.
+    pub fn predicted(&self) -> &[PredictedMeasurement<M>] {
+        &self.predicted
+    }
+
     /// The most likely landmark whose search band contains the measurement: a compatible extent, and $`d^2 \le n_σ^2`$.
     pub fn find(&self, measurement: &M::Measurement, n_sigmas: f64) -> Option<LandmarkId> {
         let noise = self.model.noise(measurement);

@@ -18,6 +18,7 @@ use super::{
     match_to_keyframe::KeyframeMatch,
     odometry::{Motion, OdometryBetweenScans},
     odometry_scale::OdometryScale,
+    plots::SearchBandScan,
     relative_motion::RelativeMotion,
     repeated_scan::RepeatedScanCheck,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
@@ -58,6 +59,7 @@ pub struct WallSlamFrontEnd {
     dead_reckoning_at_keyframe: Option<Pose2<f64>>,
     /// Points for the picture of the map.
     pub(super) scan_sample: ScanSample,
+    pub(super) search_bands: SearchBandScan,
 }
 
 impl WallSystem {
@@ -99,6 +101,7 @@ impl WallSystem {
             odometry_scale: OdometryScale::default(),
             dead_reckoning_at_keyframe: None,
             scan_sample: ScanSample::default(),
+            search_bands: SearchBandScan::default(),
         };
         Ok(Self::new(front_end, estimator))
     }
@@ -305,7 +308,7 @@ impl WallSlamFrontEnd {
                 let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
                 self.compare_with_odometry(matched, &estimator.dead_reckoning);
                 self.predict_to_scan(estimator)?;
-                let observations = self.walls_among(&found.segments, &scan.laser, estimator);
+                let observations = self.walls_among(&found.segments, (&scan.laser, &cloud), estimator);
                 let keyframe = self.last_keyframe.insert(KeyframeScan { scan, cloud });
                 self.dead_reckoning_at_keyframe = Some(estimator.dead_reckoning);
                 self.laser_heading = Some(0.0);

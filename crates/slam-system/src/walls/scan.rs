@@ -80,9 +80,9 @@ impl WallSlamFrontEnd {
     /// The segments that are long enough to be walls, or lie in the search band of an expected wall, as the laser would see them from where the
     /// model has it.
     pub(super) fn walls_among(
-        &self,
+        &mut self,
         segments: &[WallSegment],
-        laser: &Pose2<f64>,
+        (laser, cloud): (&Pose2<f64>, &ScanPointCloud),
         estimator: &mut Walls,
     ) -> Vec<Observation<WallMeasurement>> {
         let moved = self.mount().inverse().compose(laser);
@@ -101,6 +101,8 @@ impl WallSlamFrontEnd {
         if let Some(expected) = expected {
             estimator.events.add("wall_expected", expected.len() as u64);
             estimator.events.add("wall_in_search_band", found.len() as u64);
+            let walls = observations.iter().map(|observation| &observation.measurement);
+            self.search_bands.offer(found.len(), (cloud.points(), &self.params.mount()), walls, &expected);
         }
         observations
     }

@@ -5,6 +5,7 @@ mod external_sensors;
 mod odometry_faults;
 mod overview;
 mod point_params;
+mod search_bands;
 mod slam_system;
 mod smoother;
 mod wall_batch;

@@ -1,3 +1,5 @@
+mod search_bands;
+
 use nalgebra::Vector2;
 use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot, wall_band};
 
@@ -6,7 +8,10 @@ use wayfix_slam_ekf::{LandmarkEstimate, Wall};
 use super::WallRun;
 use crate::slam::plots_with;
 
+pub(super) use search_bands::SearchBandScan;
+
 /// Path and walls with their 2σ bands and points of the scans, errors with their 3σ bands and NEES where there is truth, and step times. [Andrade-Cetto 2005, Fig. 7]
+/// A scan with the search bands of the expected walls, if there are any. [Andrade-Cetto 2005, Fig. 1a]
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
@@ -25,5 +30,8 @@ pub fn plots(run: &WallRun) -> Result<Vec<SvgPlot>, PlotError> {
         surroundings: run.true_map.iter().map(|wall| vec![point(wall.start), point(wall.end)]).collect(),
         ..MapPlot::default()
     };
-    plots_with(run, map)
+    let mut plots = plots_with(run, map)?;
+    let bands = run.system.front_end.search_bands.plot();
+    plots.extend(bands.map(|bands| bands.draw()).transpose()?);
+    Ok(plots)
 }
