@@ -21,12 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (width, height) in [(208, 160), (640, 480)] {
         let camera =
             PinholeCamera::from_field_of_view(width, height, 56.9_f64.to_radians(), 45.2_f64.to_radians())?;
-        let mut projector = MapRenderer::new(Arc::clone(&map), camera);
+        let mut renderer = MapRenderer::new(Arc::clone(&map), camera);
         let poses = poses();
 
         let (mut n_spans, mut n_pixels) = (0, 0_usize);
         for pose in &poses {
-            projector.spans(pose, &mut |span| {
+            renderer.spans(pose, &mut |span| {
                 n_spans += 1;
                 n_pixels += usize::from(span.end - span.start);
             })?;
@@ -40,12 +40,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
         report(&format!("field view to spans {width}x{height}"), &poses, |pose| {
             let mut sum = 0;
-            projector.spans(pose, &mut |span| add(&mut sum, span))?;
+            renderer.spans(pose, &mut |span| add(&mut sum, span))?;
             Ok(sum)
         })?;
         report(&format!("field view to inner spans {width}x{height}"), &poses, |pose| {
             let mut sum = 0;
-            projector.inner_spans(pose, 1, &mut |span| add(&mut sum, span))?;
+            renderer.inner_spans(pose, 1, &mut |span| add(&mut sum, span))?;
             Ok(sum)
         })?;
     }

@@ -15,7 +15,7 @@ const LETTERS: [char; 4] = ['.', 'w', 'Y', 'P'];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera = PinholeCamera::from_field_of_view(96, 40, 57_f64.to_radians(), 45_f64.to_radians())?;
-    let mut projector = MapRenderer::new(Arc::new(one_end()?), camera);
+    let mut renderer = MapRenderer::new(Arc::new(one_end()?), camera);
 
     // In the middle of the field, 20 cm up, looking 10° to the left of the goal and 5° down.
     let (pitch, yaw) = (5_f64.to_radians(), 10_f64.to_radians());
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         translation: Vector3::new(0.0, 0.0, 0.2),
         rotation: UnitQuaternion::from_euler_angles(0.0, pitch, yaw),
     };
-    let labels = projector.labels(&pose)?;
+    let labels = renderer.labels(&pose)?;
     for row in 0..labels.height() {
         let letter = |column| labels.get(column, row).map_or(' ', |color| LETTERS[color.index()]);
         println!("{}", (0..labels.width()).map(letter).collect::<String>());

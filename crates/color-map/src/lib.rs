@@ -32,8 +32,8 @@
 //!
 //! // At a focal length of 100 pixels a metre at 2 m is 100 / 2 pixels: the board has 50 x 30.
 //! let camera = PinholeCamera::new(80, 60, 100.0, 100.0, 40.0, 30.0)?;
-//! let mut projector = MapRenderer::new(Arc::clone(&map), camera);
-//! let labels = projector.labels(&Pose3::identity())?;
+//! let mut renderer = MapRenderer::new(Arc::clone(&map), camera);
+//! let labels = renderer.labels(&Pose3::identity())?;
 //! assert_eq!(labels.count(ColorId(0)), 50 * 30);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -41,17 +41,17 @@ fn main() {
     let frame = PrefixSumImage::new(&image).expect("not too wide");
 
     report("frame sums 208x160", 50, || PrefixSumImage::new(&image).map(|frame| frame.n_pixels()));
-    let mut projector = MapRenderer::new(Arc::clone(&map), camera);
+    let mut renderer = MapRenderer::new(Arc::clone(&map), camera);
     report("spans of a view", 2000, || {
         let mut n = 0;
-        projector.spans(&camera_pose, &mut |span| n += usize::from(span.end - span.start)).map(|()| n)
+        renderer.spans(&camera_pose, &mut |span| n += usize::from(span.end - span.start)).map(|()| n)
     });
     let mut sums = [PixelSums::default(); 5];
     report("spans and their sums", 2000, || {
-        gather(&mut projector, |_| Some(&frame), &camera_pose, 0, &mut sums)
+        gather(&mut renderer, |_| Some(&frame), &camera_pose, 0, &mut sums)
     });
     report("inner spans and their sums", 2000, || {
-        gather(&mut projector, |_| Some(&frame), &camera_pose, 1, &mut sums)
+        gather(&mut renderer, |_| Some(&frame), &camera_pose, 1, &mut sums)
     });
     let means = ColorMeans::new(sums.iter().map(|sums| (sums.mean(), sums.count())));
     let lit = bank();

@@ -49,7 +49,7 @@ const TAIL: f64 = 4.0;
 const NARROWING: f64 = 0.7;
 /// A shorter step ends the search, m and rad; it is far below the accuracy of lasers.
 const SHORT: f64 = 1e-5;
-/// Maximum number of start headings; a full turn at the default spacing needs fewer.
+/// Maximum number of start headings on each side of the guess; half a turn at the default spacing needs fewer.
 const MOST_STARTS: usize = 16;
 
 impl ScanMatcher {

@@ -3,11 +3,11 @@
 mod bits;
 mod canvas;
 mod coverage;
+mod map_renderer;
 mod margin;
 mod outline;
 mod pose;
-mod projector;
 mod silhouette;
 mod view;
 
-pub use projector::MapRenderer;
+pub use map_renderer::MapRenderer;

@@ -125,7 +125,7 @@ fn cameras() {
 #[test]
 fn poses() {
     let map = map(vec![polygon(&[[1.0, -9.0, -9.0], [1.0, 9.0, -9.0], [1.0, 0.0, 9.0]])]).unwrap();
-    let mut projector =
+    let mut renderer =
         MapRenderer::new(Arc::new(map), PinholeCamera::from_field_of_view(20, 20, 1.0, 1.0).unwrap());
     let good = Pose3::identity();
     let quaternion = |w, i| UnitQuaternion::new_unchecked(Quaternion::new(w, i, 0.0, 0.0));
@@ -142,13 +142,13 @@ fn poses() {
     bad.push(Pose3 { rotation: quaternion(0.0, 0.0), ..good });
     for pose in bad {
         let mut n = 0;
-        let error = projector.spans(&pose, &mut |_| n += 1).unwrap_err();
+        let error = renderer.spans(&pose, &mut |_| n += 1).unwrap_err();
         assert!(matches!(error, RenderError::Pose { .. }), "{error}");
-        let inner = projector.inner_spans(&pose, 2, &mut |_| n += 1).unwrap_err();
+        let inner = renderer.inner_spans(&pose, 2, &mut |_| n += 1).unwrap_err();
         assert!(matches!(inner, RenderError::Pose { .. }), "{inner}");
         assert_eq!(n, 0);
     }
-    assert_eq!(projector.labels(&good).unwrap().count(ColorId(0)), 400);
+    assert_eq!(renderer.labels(&good).unwrap().count(ColorId(0)), 400);
 }
 
 #[test]

@@ -26,12 +26,12 @@ fn exactly_the_pixels_away_from_edges_are_left() {
         // Widths on both sides of a word's 64 bits; margins beyond the image as well.
         let (width, height) = (rng.random_range(1..140), rng.random_range(1..60));
         let camera = PinholeCamera::from_field_of_view(width, height, 1.0, 0.8).unwrap();
-        let mut projector = MapRenderer::new(Arc::clone(&map), camera);
+        let mut renderer = MapRenderer::new(Arc::clone(&map), camera);
         let pose = random_pose(&mut rng, 2.0);
-        let labels = projector.labels(&pose).unwrap();
+        let labels = renderer.labels(&pose).unwrap();
         for margin in [0, 1, 2, 5, 70, u16::MAX] {
             let mut got = vec![None; labels.pixels().len()];
-            projector
+            renderer
                 .inner_spans(&pose, margin, &mut |span| {
                     for column in span.start..span.end {
                         got[usize::from(span.row) * width as usize + usize::from(column)] = Some(span.color);

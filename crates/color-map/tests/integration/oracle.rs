@@ -1,9 +1,7 @@
-//! The projector against rays cast one by one, which share no code with it beyond the map's planes: every pixel of every view must agree.
+//! The renderer against rays cast one by one, which share no code with it beyond the map's planes: every pixel of every view must agree.
 //!
 //! They may differ where a ray passes an edge within rounding. Poses are drawn from continuous distributions, and of some 10⁷ pixels none comes
 //! that close: so the tests ask for equality, without an allowance. A pose on a grid is another matter: see `on_a_grid`.
-
-use crate::support;
 
 use std::sync::Arc;
 
@@ -42,7 +40,7 @@ fn compare(map: &Arc<ColorMap>, n: usize, reach: f64, rng: &mut ChaCha8Rng) -> f
 #[cfg(feature = "serde")]
 #[test]
 fn the_field_from_within_around_and_below() {
-    let map = Arc::new(support::field());
+    let map = Arc::new(crate::support::field());
     let share = compare(&map, 2000, 3.0, &mut ChaCha8Rng::seed_from_u64(41));
     assert!(share > 0.1, "too little to see to say anything: {share}");
 }
@@ -138,15 +136,15 @@ fn on_a_grid() {
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     // Pixel centres at multiples of 1/8 m on the front boards.
     let camera = PinholeCamera::new(33, 33, 16.0, 16.0, 16.5, 16.5).unwrap();
-    let mut projector = MapRenderer::new(Arc::clone(&map), camera);
+    let mut renderer = MapRenderer::new(Arc::clone(&map), camera);
     for (y, z) in [(0.0, 0.0), (0.125, 0.0), (0.0, -0.25), (0.5, 0.125)] {
-        let labels_at = |dy: f64, dz: f64, projector: &mut MapRenderer| {
+        let labels_at = |dy: f64, dz: f64, renderer: &mut MapRenderer| {
             let pose = Pose3 { translation: Vector3::new(0.0, y + dy, z + dz), ..Pose3::identity() };
-            projector.labels(&pose).unwrap()
+            renderer.labels(&pose).unwrap()
         };
-        let exact = labels_at(0.0, 0.0, &mut projector);
+        let exact = labels_at(0.0, 0.0, &mut renderer);
         let around = [(1e-9, 1e-9), (-1e-9, 1e-9), (1e-9, -1e-9), (-1e-9, -1e-9)]
-            .map(|(dy, dz)| labels_at(dy, dz, &mut projector));
+            .map(|(dy, dz)| labels_at(dy, dz, &mut renderer));
         for (i, label) in exact.pixels().iter().enumerate() {
             assert!(around.iter().any(|labels| labels.pixels()[i] == *label), "pixel {i} from {y}, {z}");
         }
@@ -176,7 +174,7 @@ fn no_gap_between_the_pieces_of_a_surface() {
     }
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     let camera = PinholeCamera::new(97, 65, 16.0, 16.0, 48.5, 32.5).unwrap();
-    let mut projector = MapRenderer::new(map, camera);
+    let mut renderer = MapRenderer::new(map, camera);
     let mut rng = ChaCha8Rng::seed_from_u64(47);
     // Straight down on a camera whose rays hit multiples of 1/16 m, of 1/8 m, and between.
     let down = Quaternion::new(1.0, 0.0, 1.0, 0.0);
@@ -185,7 +183,7 @@ fn no_gap_between_the_pieces_of_a_surface() {
         let rotation = UnitQuaternion::from_quaternion(down * Quaternion::new(1.0, roll, 0.0, 0.0));
         let cell = |n: i32| f64::from(n) / 16.0;
         let translation = Vector3::new(cell(i % 10), cell(i / 10 % 10), if i % 2 == 0 { 1.0 } else { 0.5 });
-        let labels = projector.labels(&Pose3 { translation, rotation }).unwrap();
+        let labels = renderer.labels(&Pose3 { translation, rotation }).unwrap();
         let gaps = labels.pixels().iter().filter(|label| label.is_none()).count();
         assert_eq!(gaps, 0, "view {i}");
     }

@@ -149,10 +149,10 @@ fn a_wide_image_is_covered_across_its_words() {
 }
 
 #[test]
-fn a_projector_remembers_nothing_of_the_last_view() {
+fn a_renderer_remembers_nothing_of_the_last_view() {
     let map = map(vec![rug(GREY, [-2.0, 2.0], [-2.0, 2.0]), board(RED, 1.0, [-0.5, 0.5], [0.0, 0.5])]);
-    let mut projector = MapRenderer::new(Arc::clone(&map), camera());
-    let first = projector.labels(&at(0.0, 0.1, 0.3)).unwrap();
-    projector.labels(&at(-1.0, 0.0, 0.4)).unwrap();
-    assert_eq!(projector.labels(&at(0.0, 0.1, 0.3)).unwrap(), first);
+    let mut renderer = MapRenderer::new(Arc::clone(&map), camera());
+    let first = renderer.labels(&at(0.0, 0.1, 0.3)).unwrap();
+    renderer.labels(&at(-1.0, 0.0, 0.4)).unwrap();
+    assert_eq!(renderer.labels(&at(0.0, 0.1, 0.3)).unwrap(), first);
 }

@@ -36,21 +36,21 @@ use crate::{
 /// let map = Arc::new(ColorMap::new(vec!["pink".into(), "cyan".into()], vec![beacon(0.4, 0), beacon(-0.4, 1)])?);
 /// let camera = PinholeCamera::from_field_of_view(104, 80, 1.0, 0.8)?;
 /// let looking = |y| Pose3 { translation: Vector3::new(0.0, y, 0.2), ..Pose3::identity() };
-/// let mut projector = MapRenderer::new(map, camera);
-/// let labels: Vec<u8> = projector
+/// let mut renderer = MapRenderer::new(map, camera);
+/// let labels: Vec<u8> = renderer
 ///     .labels(&looking(0.0))?
 ///     .pixels()
 ///     .iter()
 ///     .map(|label| label.map_or(255, |color| color.0))
 ///     .collect();
-/// let mut view = FeatureLikelihood::new(&labels, projector, FeatureLikelihoodParams::default())?;
+/// let mut view = FeatureLikelihood::new(&labels, renderer, FeatureLikelihoodParams::default())?;
 /// assert!(view.log_likelihood(&looking(0.0), &[]) > view.log_likelihood(&looking(0.3), &[]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
 pub struct FeatureLikelihood {
     seen: Vec<Feature>,
-    projector: MapRenderer,
+    renderer: MapRenderer,
     params: FeatureLikelihoodParams,
     /// Whether a colour makes features.
     is_feature: Vec<bool>,
@@ -66,22 +66,22 @@ impl FeatureLikelihood {
     /// Returns an error if there are not as many labels as the camera has pixels, or a parameter is out of range.
     pub fn new(
         labels: &[u8],
-        projector: MapRenderer,
+        renderer: MapRenderer,
         params: FeatureLikelihoodParams,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
-        let camera = *projector.camera();
+        let camera = *renderer.camera();
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         let (expected, got) = (width * height, labels.len());
         if expected != got {
             return Err(ColorModelError::ImageSize { width, height, expected, got });
         }
-        let is_feature = feature_colors(projector.map());
+        let is_feature = feature_colors(renderer.map());
         let seen = features(&find_blobs(labels, width)?, &camera, &params, &is_feature);
         let view =
             4.0 * (0.5 * width as f64 / camera.fx()).atan() * (0.5 * height as f64 / camera.fy()).atan();
         let log_clutter = (params.mean_clutter / (view * (1.0 + (got as f64).ln()))).ln();
-        Ok(Self { seen, projector, params, is_feature, log_clutter, spans: Vec::new() })
+        Ok(Self { seen, renderer, params, is_feature, log_clutter, spans: Vec::new() })
     }
 
     /// Log gain of a pair over a missing blob and clutter, nats.
@@ -105,17 +105,17 @@ impl FeatureLikelihood {
 
 impl CameraPoseLikelihood for FeatureLikelihood {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, _light: &[ColorDensity]) -> LogWeight {
-        let Self { projector, spans, is_feature, params, .. } = self;
+        let Self { renderer, spans, is_feature, params, .. } = self;
         spans.clear();
         let mut add = |span: PixelSpan| {
             if is_feature[span.color.index()] {
                 spans.push(span);
             }
         };
-        if projector.spans(camera_pose, &mut add).is_err() {
+        if renderer.spans(camera_pose, &mut add).is_err() {
             return f64::NEG_INFINITY;
         }
-        let expected = features(&blobs_of_spans(spans), projector.camera(), params, is_feature);
+        let expected = features(&blobs_of_spans(spans), renderer.camera(), params, is_feature);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for (s, seen) in self.seen.iter().enumerate() {
             let same = expected.iter().enumerate().filter(|(_, expected)| expected.color == seen.color);

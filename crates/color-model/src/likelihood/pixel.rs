@@ -31,7 +31,7 @@ use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 pub struct PixelLikelihood<'a> {
     image: &'a YuvImage,
     background: Vec<Option<f64>>,
-    projector: MapRenderer,
+    renderer: MapRenderer,
     params: PixelLikelihoodParams,
 }
 
@@ -44,14 +44,14 @@ impl<'a> PixelLikelihood<'a> {
     pub fn new(
         image: &'a YuvImage,
         nats: impl FnMut([u8; 3]) -> Option<f64>,
-        projector: MapRenderer,
+        renderer: MapRenderer,
         params: PixelLikelihoodParams,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
-        check_size(&projector, image.width() as usize, image.height() as usize)?;
+        check_size(&renderer, image.width() as usize, image.height() as usize)?;
         let background =
             image.pixels().iter().copied().map(nats).map(|nats| nats.map(frame::rounded)).collect();
-        Ok(Self { image, background, projector, params })
+        Ok(Self { image, background, renderer, params })
     }
 }
 
@@ -60,7 +60,7 @@ impl CameraPoseLikelihood for PixelLikelihood<'_> {
         let Ok(light) = light.iter().map(PixelSumDensity::new).collect::<Result<Vec<_>, _>>() else {
             return f64::NEG_INFINITY;
         };
-        let Ok(labels) = self.projector.labels(camera_pose) else {
+        let Ok(labels) = self.renderer.labels(camera_pose) else {
             return f64::NEG_INFINITY;
         };
         let mut regions = vec![Region::default(); light.len()];
@@ -94,12 +94,8 @@ fn is_inside(labels: &LabelImage, column: u32, row: u32, margin: u32) -> bool {
     rows.all(|r| columns.clone().all(|c| labels.get(c, r) == labels.get(column, row)))
 }
 
-pub(crate) fn check_size(
-    projector: &MapRenderer,
-    width: usize,
-    height: usize,
-) -> Result<(), ColorModelError> {
-    let camera = projector.camera();
+pub(crate) fn check_size(renderer: &MapRenderer, width: usize, height: usize) -> Result<(), ColorModelError> {
+    let camera = renderer.camera();
     let expected = (camera.width() as usize, camera.height() as usize);
     if expected == (width, height) {
         Ok(())

@@ -12,7 +12,7 @@ use crate::{ColorDensity, ColorModelError, PixelSums, PrefixSumImage, TileSums, 
 /// # Errors
 /// Returns an error if the pose is not finite or its quaternion not of unit length.
 pub fn gather<'a>(
-    projector: &mut MapRenderer,
+    renderer: &mut MapRenderer,
     frame_of: impl Fn(ColorId) -> Option<&'a PrefixSumImage>,
     camera_pose: &Pose3<f64>,
     edge_margin: u16,
@@ -25,14 +25,14 @@ pub fn gather<'a>(
         }
     };
     match edge_margin {
-        0 => projector.spans(camera_pose, &mut add),
-        margin => projector.inner_spans(camera_pose, margin, &mut add),
+        0 => renderer.spans(camera_pose, &mut add),
+        margin => renderer.inner_spans(camera_pose, margin, &mut add),
     }
 }
 
 /// [`gather`] for each tile of the image.
 pub(crate) fn gather_tiles(
-    projector: &mut MapRenderer,
+    renderer: &mut MapRenderer,
     frame: &TiledImage,
     camera_pose: &Pose3<f64>,
     edge_margin: u16,
@@ -44,8 +44,8 @@ pub(crate) fn gather_tiles(
         tiles.add_run(frame, run, span.color.index());
     };
     match edge_margin {
-        0 => projector.spans(camera_pose, &mut add)?,
-        margin => projector.inner_spans(camera_pose, margin, &mut add)?,
+        0 => renderer.spans(camera_pose, &mut add)?,
+        margin => renderer.inner_spans(camera_pose, margin, &mut add)?,
     }
     tiles.add_covered_rows(frame);
     Ok(())
@@ -77,25 +77,25 @@ pub(crate) fn gather_tiles(
 /// ```
 pub struct PixelSpanLikelihood<'a> {
     frame: &'a PrefixSumImage,
-    projector: MapRenderer,
+    renderer: MapRenderer,
     sums: Vec<PixelSums>,
     params: PixelLikelihoodParams,
 }
 
 impl<'a> PixelSpanLikelihood<'a> {
-    /// The likelihood of one frame, made by [`PrefixSumImage::with_background`], in the map of `projector`.
+    /// The likelihood of one frame, made by [`PrefixSumImage::with_background`], in the map of `renderer`.
     ///
     /// # Errors
     /// Returns an error if frame and camera differ in size, or a parameter is out of range.
     pub fn new(
         frame: &'a PrefixSumImage,
-        projector: MapRenderer,
+        renderer: MapRenderer,
         params: PixelLikelihoodParams,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
-        check_size(&projector, frame.width(), frame.height())?;
-        let sums = vec![PixelSums::default(); projector.map().colors().len()];
-        Ok(Self { frame, projector, sums, params })
+        check_size(&renderer, frame.width(), frame.height())?;
+        let sums = vec![PixelSums::default(); renderer.map().colors().len()];
+        Ok(Self { frame, renderer, sums, params })
     }
 }
 
@@ -105,7 +105,7 @@ impl CameraPoseLikelihood for PixelSpanLikelihood<'_> {
             return f64::NEG_INFINITY;
         };
         let margin = self.params.edge_margin_pixels;
-        match gather(&mut self.projector, |_| Some(self.frame), camera_pose, margin, &mut self.sums) {
+        match gather(&mut self.renderer, |_| Some(self.frame), camera_pose, margin, &mut self.sums) {
             Ok(()) => log_likelihood(&self.sums, &light, &self.params),
             Err(_) => f64::NEG_INFINITY,
         }

@@ -50,7 +50,7 @@ pub(crate) fn check_frame(
 
 /// Working memory of a thread.
 pub(crate) struct Scratch<S> {
-    projector: MapRenderer,
+    renderer: MapRenderer,
     tiles: TileSums,
     likelihood: S,
 }
@@ -92,7 +92,7 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
 
     pub(crate) fn scratch(&self) -> Scratch<L::Scratch> {
         Scratch {
-            projector: MapRenderer::new(Arc::clone(self.scene.map), self.scene.camera),
+            renderer: MapRenderer::new(Arc::clone(self.scene.map), self.scene.camera),
             tiles: TileSums::new(&self.image, self.n_colors()),
             likelihood: self.scene.likelihood.scratch(&self.frame),
         }
@@ -114,9 +114,9 @@ impl<'a, L: LikelihoodModel> PreparedFrame<'a, L> {
     ) {
         let camera_pose = &location.camera_pose(self.mount);
         let margin = self.scene.pixels.edge_margin_pixels;
-        let Scratch { projector, tiles, likelihood } = scratch;
+        let Scratch { renderer, tiles, likelihood } = scratch;
         shown.fill(PixelSums::default());
-        if gather_tiles(projector, &self.image, camera_pose, margin, tiles).is_err() {
+        if gather_tiles(renderer, &self.image, camera_pose, margin, tiles).is_err() {
             return log_likelihoods.fill(f64::NEG_INFINITY);
         }
         let view = PredictedMapView { camera_pose, image: &self.image, tiles };

@@ -87,9 +87,9 @@ fn largest_difference(params: PixelLikelihoodParams, n_poses: usize) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
     let image = image(&mut rng);
     let frame = PrefixSumImage::with_background(&image, nats).expect("valid by construction");
-    let projector = || MapRenderer::new(field(), camera());
-    let mut plain = PixelLikelihood::new(&image, nats, projector(), params).expect("valid by construction");
-    let mut spans = PixelSpanLikelihood::new(&frame, projector(), params).expect("valid by construction");
+    let renderer = || MapRenderer::new(field(), camera());
+    let mut plain = PixelLikelihood::new(&image, nats, renderer(), params).expect("valid by construction");
+    let mut spans = PixelSpanLikelihood::new(&frame, renderer(), params).expect("valid by construction");
     let (mut largest, mut n_seen) = (0.0_f64, 0);
     for _ in 0..n_poses {
         let (pose, light) = (pose(&mut rng), light(&mut rng));
@@ -125,8 +125,8 @@ fn so_they_are_with_floor_and_margin() {
 fn frames_of_another_size_are_refused() {
     let small = YuvImage::new(8, 8, vec![[0; 3]; 64]).expect("valid by construction");
     let frame = PrefixSumImage::new(&small).expect("valid by construction");
-    let projector = || MapRenderer::new(field(), camera());
+    let renderer = || MapRenderer::new(field(), camera());
     let expected = ColorModelError::FrameSize { expected: (52, 40), got: (8, 8) };
-    assert_eq!(PixelSpanLikelihood::new(&frame, projector(), product()).err(), Some(expected.clone()));
-    assert_eq!(PixelLikelihood::new(&small, nats, projector(), product()).err(), Some(expected));
+    assert_eq!(PixelSpanLikelihood::new(&frame, renderer(), product()).err(), Some(expected.clone()));
+    assert_eq!(PixelLikelihood::new(&small, nats, renderer(), product()).err(), Some(expected));
 }

@@ -300,32 +300,39 @@ impl WallSlamFrontEnd {
         let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
         self.laser_heading = laser_heading;
         let KeyframeThreshold { min_distance, min_rotation } = self.params.keyframes;
-        let corrected =
-            if self.last_keyframe.is_some() && self.relative_motion.is_within(min_distance, min_rotation) {
-                estimator.events.count("scan_skipped");
-                (0.0, 0)
-            } else {
-                let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
-                self.compare_with_odometry(matched, &estimator.dead_reckoning);
-                self.predict_to_scan(estimator)?;
-                let observations = self.walls_among(&found.segments, (&scan.laser, &cloud), estimator);
-                let keyframe = self.last_keyframe.insert(KeyframeScan { scan, cloud });
-                self.dead_reckoning_at_keyframe = Some(estimator.dead_reckoning);
-                self.laser_heading = Some(0.0);
-                let report = estimator.update(&observations, |wall| {
-                    format!(
-                        "a wall with the ends {:?}, {:?}, m",
-                        wall.ends[0].as_slice(),
-                        wall.ends[1].as_slice()
-                    )
-                })?;
-                self.scan_sample.offer(keyframe.cloud.points(), &estimator.filter.robot().pose);
-                nis(&report)
-            };
+        let is_near = self.relative_motion.is_within(min_distance, min_rotation);
+        let nis_of_walls = if self.last_keyframe.is_some() && is_near {
+            estimator.events.count("scan_skipped");
+            (0.0, 0)
+        } else {
+            self.take_keyframe(KeyframeScan { scan, cloud }, matched, estimator)?
+        };
         estimator.step += stopwatch.elapsed();
-        self.add_stamped_estimate(stamp, corrected, estimator);
+        self.add_stamped_estimate(stamp, nis_of_walls, estimator);
         self.turns.push(stamp, estimator.dead_reckoning, seen_turn);
         Ok(())
+    }
+
+    /// Moves the filter to a scan and corrects it by the walls of the scan, which is the last keyframe then. Returns sum and number of the NIS.
+    fn take_keyframe(
+        &mut self,
+        keyframe: KeyframeScan,
+        matched: Option<KeyframeMatch>,
+        estimator: &mut Walls,
+    ) -> Result<(f64, usize), String> {
+        let found = keyframe.scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
+        self.compare_with_odometry(matched, &estimator.dead_reckoning);
+        self.predict_to_scan(estimator)?;
+        let observations =
+            self.walls_among(&found.segments, (&keyframe.scan.laser, &keyframe.cloud), estimator);
+        let keyframe = self.last_keyframe.insert(keyframe);
+        self.dead_reckoning_at_keyframe = Some(estimator.dead_reckoning);
+        self.laser_heading = Some(0.0);
+        let report = estimator.update(&observations, |wall| {
+            format!("a wall with the ends {:?}, {:?}, m", wall.ends[0].as_slice(), wall.ends[1].as_slice())
+        })?;
+        self.scan_sample.offer(keyframe.cloud.points(), &estimator.filter.robot().pose);
+        Ok(nis(&report))
     }
 
     /// Compares the motion from the last keyframe to a new one by odometry and by the scans alone.

@@ -11,7 +11,7 @@ const LEAST_OVERLAP: f64 = 0.15;
 /// A match of a scan to that of the last keyframe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KeyframeMatch {
-    /// The motion since the keyframe before the match.
+    /// The motion since the keyframe, as it was known before the match.
     pub(super) guess: Pose2<f64>,
     pub(super) found: ScanAlignment,
 }

@@ -6,7 +6,7 @@ use wayfix_slam_ekf::{OdometryMotion, PoseWithHeadingDrift};
 
 use super::OdometryNoisePerScan;
 
-/// The motion since the last keyframe by odometry, with its covariance.
+/// The motion since the last keyframe by odometry, corrected by the matches since, with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RelativeMotion {
     /// The motion, in the frame of the robot at the keyframe, with the drift that is estimated taken out.

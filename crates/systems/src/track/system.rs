@@ -14,7 +14,7 @@ use super::{
 
 /// A tracker that processes the images of a log.
 ///
-/// It starts in the first readable frame, with the given box or mask, or else with the first true box. An unreadable or rejected frame has no
+/// It starts in the first readable frame with a box: the given box or mask, else a true box. With a detector it starts where a head is found. An unreadable or rejected frame has no
 /// estimate. If its truth is known, it counts with overlap 0, like a frame in which the tracker reports the target lost.
 pub struct TrackSystem {
     setup: TrackerConfig,

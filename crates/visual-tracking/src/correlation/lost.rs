@@ -3,20 +3,20 @@ use super::recenter::N_RECENTERING_FRAMES;
 use super::recognizer::{FilterResponse, WindowSample};
 use super::response::Peak;
 use super::tracker::CorrelationTracker;
-use super::window::{Pose, SIDE};
+use super::window::{SIDE, WindowPlace};
 use crate::RgbImage;
 
 impl CorrelationTracker {
-    /// Pose at which the trusted filter recognizes the target, if any: in the window or, after some images without it, at the next place of a scan.
+    /// WindowPlace at which the trusted filter recognizes the target, if any: in the window or, after some images without it, at the next place of a scan.
     pub(super) fn recognized_elsewhere(
         &self,
         picture: &RgbImage,
         around: &WindowSample,
-    ) -> Option<(Pose, WindowSample, FilterResponse)> {
+    ) -> Option<(WindowPlace, WindowSample, FilterResponse)> {
         self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
             let turn = self.n_untrusted.checked_sub(self.params.lost_after_n_frames)?;
             let center = self.place(turn);
-            let from = Pose { center, ..self.pose };
+            let from = WindowPlace { center, ..self.pose };
             self.recognized_by(&self.trusted, picture, from, &self.recognizer.sample_at(picture, from))
         })
     }
@@ -28,7 +28,7 @@ impl CorrelationTracker {
         let centers: Vec<[f64; 2]> = std::iter::once(self.pose.center).chain(others).collect();
         self.n_lost += 1;
         for center in centers {
-            let from = Pose { center, ..self.pose };
+            let from = WindowPlace { center, ..self.pose };
             let around = self.recognizer.sample_at(picture, from);
             let found = [&self.trusted, &self.current].into_iter().find_map(|filter| {
                 let (pose, _, evidence) = self.recognized_by(filter, picture, from, &around)?;
@@ -48,14 +48,14 @@ impl CorrelationTracker {
         (self.n_lost, self.n_without_evidence, self.n_recentering) = (0, 0, N_RECENTERING_FRAMES);
     }
 
-    /// Pose at which a filter recognizes the target in the window `around` a pose, if any.
+    /// WindowPlace at which a filter recognizes the target in the window `around` a pose, if any.
     fn recognized_by(
         &self,
         filter: &Spectrum,
         picture: &RgbImage,
-        pose: Pose,
+        pose: WindowPlace,
         around: &WindowSample,
-    ) -> Option<(Pose, WindowSample, FilterResponse)> {
+    ) -> Option<(WindowPlace, WindowSample, FilterResponse)> {
         let response = self.recognizer.response(filter, around);
         if Peak::of(&response, SIDE).peak_to_sidelobe < self.params.no_evidence_below_psr {
             return None;

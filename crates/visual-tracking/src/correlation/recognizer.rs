@@ -4,7 +4,7 @@ use super::channels::planes::Spectrum;
 use super::filter::CorrelationFilter;
 use super::params::CorrelationTrackerParams;
 use super::response::Peak;
-use super::window::{Pose, SIDE, Window};
+use super::window::{SIDE, Window, WindowPlace};
 use crate::RgbImage;
 use crate::picture::rgb_pixels;
 
@@ -46,7 +46,7 @@ impl Recognizer {
         Self { window, filter, shares: Shares { gradient: 1.0 - color - grey, grey, color } }
     }
 
-    pub(super) fn sample_at(&self, picture: &RgbImage, pose: Pose) -> WindowSample {
+    pub(super) fn sample_at(&self, picture: &RgbImage, pose: WindowPlace) -> WindowSample {
         self.sample(self.window.patch(picture, pose))
     }
 

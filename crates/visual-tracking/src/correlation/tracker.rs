@@ -8,7 +8,7 @@ use super::params::CorrelationTrackerParams;
 use super::recognizer::{FilterResponse, Recognizer, WindowSample};
 use super::response::Peak;
 use super::scale_filter::ScaleFilter;
-use super::window::{Pose, SIDE};
+use super::window::{SIDE, WindowPlace};
 use crate::error::check_size;
 use crate::{BoundingBox, TargetEstimate, TrackStatus, Tracker};
 use crate::{RgbImage, TrackingError};
@@ -66,7 +66,7 @@ pub struct CorrelationTracker {
     pub(super) recognizer: Recognizer,
     pub(super) colors: ColorRatio,
     pub(super) scales: ScaleFilter,
-    pub(super) pose: Pose,
+    pub(super) pose: WindowPlace,
     /// The filter as it was learned last.
     pub(super) current: Spectrum,
     /// The window at the last learning step.
@@ -107,7 +107,7 @@ impl CorrelationTracker {
             }
         }
         let recognizer = Recognizer::new(picture, size, &params);
-        let pose = Pose { center: target.center(), scale: 1.0 };
+        let pose = WindowPlace { center: target.center(), scale: 1.0 };
         let sample = recognizer.sample_at(picture, pose);
         let learning = Learning { inertia: 0.0, penalty: params.spatial_spectral_agreement_weight as f32 };
         let current = recognizer.filter.learned(None, &sample.spectrum, learning);
@@ -174,7 +174,7 @@ impl CorrelationTracker {
     }
 
     /// The pose to which the target has moved from `pose`, by shape and colour together.
-    fn moved(&self, picture: &RgbImage, pose: Pose, around: &WindowSample) -> Pose {
+    fn moved(&self, picture: &RgbImage, pose: WindowPlace, around: &WindowSample) -> WindowPlace {
         let window = &self.recognizer.window;
         let mut response = self.recognizer.response(&self.current, around);
         let score = window.box_means(&self.colors.of(&around.patch));
@@ -187,7 +187,7 @@ impl CorrelationTracker {
     }
 
     /// The pose at the peak of a response, at the scale that fits there.
-    pub(super) fn shifted(&self, picture: &RgbImage, pose: Pose, response: &[f32]) -> Pose {
+    pub(super) fn shifted(&self, picture: &RgbImage, pose: WindowPlace, response: &[f32]) -> WindowPlace {
         let window = &self.recognizer.window;
         let mut pose = window.moved(pose, Peak::of(response, SIDE).shift);
         let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);

@@ -5,7 +5,7 @@ use super::filter::Learning;
 use super::recognizer::WindowSample;
 use super::response::Peak;
 use super::tracker::CorrelationTracker;
-use super::window::{Pose, SIDE, Window};
+use super::window::{SIDE, Window, WindowPlace};
 use crate::RgbImage;
 
 /// Angles searched for a lost target; a filter recognizes rotations of up to half the step.
@@ -22,7 +22,7 @@ impl CorrelationTracker {
     ///
     /// The filter is relearned at the result, because it covers one orientation only.
     pub(super) fn search_turned(&mut self, picture: &RgbImage) -> f64 {
-        let from = Pose { center: self.most_alike(picture), ..self.pose };
+        let from = WindowPlace { center: self.most_alike(picture), ..self.pose };
         let surroundings = self.recognizer.window.surroundings(picture, from);
         let first = 1 + self.n_lost % 2 * N_AT_ONCE;
         let angles = (first..(first + N_AT_ONCE).min(N_ANGLES)).map(|k| TAU * k as f64 / N_ANGLES as f64);
@@ -49,7 +49,7 @@ impl CorrelationTracker {
     }
 
     /// Relearns the target at a pose.
-    pub(super) fn relearn(&mut self, picture: &RgbImage, pose: Pose, sample: &WindowSample) {
+    pub(super) fn relearn(&mut self, picture: &RgbImage, pose: WindowPlace, sample: &WindowSample) {
         let learning =
             Learning { inertia: 0.0, penalty: self.params.spatial_spectral_agreement_weight as f32 };
         self.current = self.recognizer.filter.learned(None, &sample.spectrum, learning);

@@ -11,7 +11,7 @@ pub(super) const PIXELS: usize = SIDE * CELL;
 
 /// Position of the target, in image pixels, and its size relative to the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pose {
+pub(super) struct WindowPlace {
     pub(super) center: [f64; 2],
     pub(super) scale: f64,
 }
@@ -56,12 +56,12 @@ impl Window {
     }
 
     /// The patch of the image in the window.
-    pub(super) fn patch(&self, picture: &RgbImage, pose: Pose) -> Patch {
+    pub(super) fn patch(&self, picture: &RgbImage, pose: WindowPlace) -> Patch {
         Patch::sampled(picture, pose.center, [self.side * pose.scale; 2], (PIXELS, PIXELS))
     }
 
     /// The patch of the image in an enlarged window, which can be [rotated](Self::turned).
-    pub(super) fn surroundings(&self, picture: &RgbImage, pose: Pose) -> Patch {
+    pub(super) fn surroundings(&self, picture: &RgbImage, pose: WindowPlace) -> Patch {
         let pixels = (PIXELS as f64 * SQRT_2).ceil() as usize;
         let extent = self.side * pose.scale * pixels as f64 / PIXELS as f64;
         Patch::sampled(picture, pose.center, [extent; 2], (pixels, pixels))
@@ -73,10 +73,10 @@ impl Window {
     }
 
     /// `pose` moved by `shift` cells.
-    pub(super) fn moved(&self, pose: Pose, shift: [f64; 2]) -> Pose {
+    pub(super) fn moved(&self, pose: WindowPlace, shift: [f64; 2]) -> WindowPlace {
         let per_cell = self.side * pose.scale / SIDE as f64;
         let center = [0, 1].map(|axis| pose.center[axis] + shift[axis] * per_cell);
-        Pose { center, ..pose }
+        WindowPlace { center, ..pose }
     }
 
     /// 1 in cells of the target, 0 outside, a share in cells that it partly covers.

@@ -218,10 +218,10 @@ impl<T: LightingTracker> Evidence<'_, T> {
         at: usize,
         (location, independent_share): (&CameraLocation, f64),
     ) {
-        let (projector, tiles) = &mut scratch.views[level];
+        let (renderer, tiles) = &mut scratch.views[level];
         let Level { tiles: frames, edge_margin, .. } = &self.levels[level];
         let camera_pose = location.camera_pose(&self.frames[at].mount);
-        if gather_tiles(projector, &frames[at], &camera_pose, *edge_margin, tiles).is_ok() {
+        if gather_tiles(renderer, &frames[at], &camera_pose, *edge_margin, tiles).is_ok() {
             scratch.tiles.add_tiles(&frames[at], tiles.regions(), independent_share);
         }
     }

@@ -27,7 +27,7 @@ const PIXEL_SIGMA: f64 = 4.0;
 pub(crate) struct Scene {
     pub(crate) map: Arc<ColorMap>,
     pub(crate) camera: PinholeCamera,
-    projector: MapRenderer,
+    renderer: MapRenderer,
 }
 
 impl Scene {
@@ -35,13 +35,13 @@ impl Scene {
     pub(crate) fn new() -> Self {
         let map = Arc::new(field_map().expect("a constant map"));
         let camera = PinholeCamera::from_field_of_view(104, 80, 0.993, 0.789).expect("an ERS-7");
-        let projector = MapRenderer::new(Arc::clone(&map), camera);
-        Self { map, camera, projector }
+        let renderer = MapRenderer::new(Arc::clone(&map), camera);
+        Self { map, camera, renderer }
     }
 
     /// Labels from a camera pose, row by row; `None` beside the map.
     pub(crate) fn labels(&mut self, camera_pose: &Pose3<f64>) -> Vec<Option<ColorId>> {
-        self.projector.labels(camera_pose).expect("a finite pose").pixels().to_vec()
+        self.renderer.labels(camera_pose).expect("a finite pose").pixels().to_vec()
     }
 
     /// What a camera sees, with noise, in front of a wall.

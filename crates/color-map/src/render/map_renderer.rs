@@ -26,9 +26,9 @@ use crate::{
 /// let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| Vector3::new(2.0, y, z)).to_vec();
 /// let wall = ColoredShape::Polygon { color: ColorId(0), vertices };
 /// let map = Arc::new(ColorMap::new(vec!["white".into()], vec![wall])?);
-/// let mut projector = MapRenderer::new(map, PinholeCamera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
+/// let mut renderer = MapRenderer::new(map, PinholeCamera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
 /// let mut spans = Vec::new();
-/// projector.spans(&Pose3::identity(), &mut |span| spans.push(span))?;
+/// renderer.spans(&Pose3::identity(), &mut |span| spans.push(span))?;
 /// // Half a pixel to either side of the middle, and pixel centres at the very edge belong to what is right of it and below.
 /// assert_eq!(spans, [PixelSpan { row: 0, start: 1, end: 2, color: ColorId(0) }]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
