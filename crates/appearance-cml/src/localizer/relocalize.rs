@@ -97,11 +97,9 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
         let radius = map.match_radius(&params.map);
         let independence = if radius > 0.0 { (distance / radius).min(1.0) } else { 0.0 };
         let sample = map.sample(view, self.n_views, N_FAR);
-        let test = |at: Option<&Gaussian<Pose2<f64>>>| map.test_place(view, at?, &sample, &params.map);
-
         let rate = kidnap.rate();
         let ratio = |test| independence * log_ratio(test, rate);
-
+        let test = |at: Option<&Gaussian<Pose2<f64>>>| map.test_place(view, at?, &sample, &params.map);
         let of_present = test(Some(present));
         kidnap.unsearched += distance;
         kidnap.alternatives.drive(distance)?;
@@ -118,21 +116,31 @@ impl<D: ViewDescriptor + Clone, S: ReferenceSearch<D>, M> AppearanceLocalizer<D,
         kidnap.observe(of_present, independence);
         let is_recognized = of_present.is_some_and(|test| test.is_recognized);
         if !is_recognized && kidnap.unsearched >= radius {
-            let prior = (radius * radius / map.area()).min(1.0);
-            let mut places = search(map, view, params).unwrap_or_default();
-            places.retain(|place| is_new(place, present, kidnap, map, params));
-            let proposals = places.into_iter().filter_map(|place| {
-                let log_likelihood_ratio = ratio(test(Some(&place))) - ratio(of_present);
-                Some(RelocalizationCandidate {
-                    hypothesis: Belief::at(place).ok()?,
-                    prior,
-                    log_likelihood_ratio,
-                })
-            });
-            kidnap.alternatives.propose(proposals)?;
-            kidnap.unsearched = 0.0;
+            let against_present = |place: &_| ratio(test(Some(place))) - ratio(of_present);
+            self.propose_places(view, kidnap, (present, radius), against_present)?;
         }
         Ok(kidnap.alternatives.decide(belief))
+    }
+
+    /// Searches the map for a view and proposes the places that are not known yet, with their log-likelihood ratios against the present hypothesis.
+    fn propose_places(
+        &self,
+        view: &D,
+        kidnap: &mut KidnapTest,
+        (present, radius): (&Gaussian<Pose2<f64>>, f64),
+        against_present: impl Fn(&Gaussian<Pose2<f64>>) -> f64,
+    ) -> Result<(), AppearanceMapError> {
+        let (map, params) = (&self.map, &self.params);
+        let prior = (radius * radius / map.area()).min(1.0);
+        let mut places = search(map, view, params).unwrap_or_default();
+        places.retain(|place| is_new(place, present, kidnap, map, params));
+        let proposals = places.into_iter().filter_map(|place| {
+            let log_likelihood_ratio = against_present(&place);
+            Some(RelocalizationCandidate { hypothesis: Belief::at(place).ok()?, prior, log_likelihood_ratio })
+        });
+        kidnap.alternatives.propose(proposals)?;
+        kidnap.unsearched = 0.0;
+        Ok(())
     }
 }
 

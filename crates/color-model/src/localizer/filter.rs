@@ -141,10 +141,40 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
         params: &LocalizerParams,
         rng: &mut R,
     ) -> Result<(), ColorModelError> {
+        self.view(frame, seconds, params, rng)?;
+        let hidden = params.occlusion.predict(self.hidden, seconds);
+        let evidence = |particle: &ColorParticle<T>| or_hidden(particle.log_likelihood, hidden);
+        let evidences: Vec<f64> = self.particles.iter().map(evidence).collect();
+        let min_effective = params.tempering_min_ess_share * self.weights.effective_sample_size();
+        let (weights, tempering) = tempered(&evidences, &self.weights, min_effective)?;
+        let joint = evidences.iter().zip(self.weights.as_slice()).map(|(l, w)| l + w.ln());
+        let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
+        self.hidden = ViewOcclusionModel::posterior(hidden, log_evidence);
+        let (light_probabilities, mean_log_likelihood) =
+            self.summarized(&weights, params.pixels.outlier_share.ln() * frame.n_tiles() as f64);
+        self.weighing = Weighing {
+            log_evidence,
+            mean_log_likelihood,
+            tempering,
+            effective_particles: weights.effective_sample_size(),
+            light_probabilities,
+        };
+        self.weights = weights;
+        Ok(())
+    }
+
+    /// Draws a camera error for each particle, sums the pixels that it sees, and draws its light.
+    fn view<L: LikelihoodModel, R: Rng + ?Sized>(
+        &mut self,
+        frame: &PreparedFrame<'_, L>,
+        seconds: f64,
+        params: &LocalizerParams,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
         let mut set = ParticleSet::new(std::mem::take(&mut self.particles))?;
-        let weigh = |(scratch, values): &mut (_, Vec<f64>),
-                     particle: &mut ColorParticle<T>,
-                     rng: &mut ParticleChunkRng| {
+        let view = |(scratch, values): &mut (_, Vec<f64>),
+                    particle: &mut ColorParticle<T>,
+                    rng: &mut ParticleChunkRng| {
             let location = &mut particle.state.sampled;
             location.error = params.camera_pose_noise.after(&location.error, seconds, rng);
             let light = particle.state.conditional();
@@ -158,37 +188,23 @@ impl<T: LightingTracker + Clone + Send + Sync> ColorFilter<T> {
                 .filter(|(at, _)| *at != particle.light && Some(*at) != shade)
                 .for_each(|(_, sums)| sums.fill(PixelSums::default()));
         };
-        set.propagate_with(|| (frame.scratch(), Vec::new()), weigh, rng);
+        set.propagate_with(|| (frame.scratch(), Vec::new()), view, rng);
         self.particles = set.states().to_vec();
+        Ok(())
+    }
 
-        let hidden = params.occlusion.predict(self.hidden, seconds);
-        let evidence = |particle: &ColorParticle<T>| or_hidden(particle.log_likelihood, hidden);
-        let evidences: Vec<f64> = self.particles.iter().map(evidence).collect();
-        let least = params.tempering_min_ess_share * self.weights.effective_sample_size();
-        let (weights, tempering) = tempered(&evidences, &self.weights, least)?;
-        let joint = evidences.iter().zip(self.weights.as_slice()).map(|(l, w)| l + w.ln());
+    /// The probability of each light, and the mean log-likelihood, of which a particle counts at least `least`, the worst that a frame can.
+    fn summarized(&self, weights: &NormalizedWeights, least: f64) -> (Vec<f64>, f64) {
         let n_lights = self.particles.first().map_or(0, |particle| particle.state.conditional().n_lights());
         let mut light_probabilities = vec![0.0; n_lights];
         let mut mean_log_likelihood = 0.0;
-        // The worst that a frame can count.
-        let least = params.pixels.outlier_share.ln() * frame.n_tiles() as f64;
         for (particle, weight) in
             self.particles.iter().zip(weights.as_slice()).filter(|(_, weight)| **weight > 0.0)
         {
             light_probabilities[particle.light] += weight;
             mean_log_likelihood += weight * particle.log_likelihood.max(least);
         }
-        let log_evidence = wayfix_gaussian_core::log_sum_exp(&joint.collect::<Vec<_>>());
-        self.hidden = ViewOcclusionModel::posterior(hidden, log_evidence);
-        self.weighing = Weighing {
-            log_evidence,
-            mean_log_likelihood,
-            tempering,
-            effective_particles: weights.effective_sample_size(),
-            light_probabilities,
-        };
-        self.weights = weights;
-        Ok(())
+        (light_probabilities, mean_log_likelihood)
     }
 
     /// Draws the ancestors of the next generation, as many as their spread needs. [Fox 2003]
