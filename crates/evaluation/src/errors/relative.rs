@@ -1,6 +1,7 @@
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 
 use super::PoseWithTruth;
+use crate::report::Metric;
 
 /// Errors of the motion between poses, which no alignment of the whole path changes. [Sturm et al. 2012, relative pose error]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,15 @@ pub struct RelativeErrors {
     pub per_meter: Option<f64>,
     /// Mean heading error of the motion, per radian that the true heading turned, rad/rad; `None` if it turned less than a radian.
     pub per_radian: Option<f64>,
+}
+
+impl RelativeErrors {
+    /// The figures `rpe_m_per_m` and `rpe_rad_per_rad`, as far as the path has them.
+    pub fn metrics(&self) -> impl Iterator<Item = Metric> {
+        let per_meter = self.per_meter.map(|error| Metric::new("rpe_m_per_m", error, "m/m"));
+        let per_radian = self.per_radian.map(|error| Metric::new("rpe_rad_per_rad", error, "rad/rad"));
+        per_meter.into_iter().chain(per_radian)
+    }
 }
 
 /// Relative errors over pieces of one metre and of one radian, from every sample on.
@@ -24,6 +34,7 @@ pub struct RelativeErrors {
 /// };
 /// let errors = relative_errors(&[sample(0), sample(1), sample(2), sample(3)]);
 /// assert!((errors.per_meter.unwrap() - 0.1).abs() < 1e-12 && errors.per_radian.is_none());
+/// assert!(errors.metrics().all(|metric| metric.name == "rpe_m_per_m"));
 /// ```
 pub fn relative_errors(samples: &[PoseWithTruth]) -> RelativeErrors {
     let step = |pair: &[PoseWithTruth]| {

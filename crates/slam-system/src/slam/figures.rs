@@ -82,8 +82,7 @@ pub(crate) fn path_metrics(
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
         metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
-        metrics.extend(relative.per_meter.map(|error| Metric::new("rpe_m_per_m", error, "m/m")));
-        metrics.extend(relative.per_radian.map(|error| Metric::new("rpe_rad_per_rad", error, "rad/rad")));
+        metrics.extend(relative.metrics());
         let nees = errors.nees_mean.filter(|_| !truth_is_estimate);
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }

@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use wayfix_evaluation::{
-    errors::PoseWithTruth,
+    errors::{PoseWithTruth, relative_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_system_core::System;
@@ -57,6 +57,8 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
     if run.headings_are_measured {
         let heading = samples.iter().map(|(_, sample)| sample.heading_error()).sum::<f64>() / n;
         metrics.push(Metric::new("heading_mean_deg", heading.to_degrees(), "°"));
+        let samples: Vec<PoseWithTruth> = samples.iter().map(|(_, sample)| *sample).collect();
+        metrics.extend(relative_errors(&samples).metrics());
     }
     metrics.extend(mean(
         samples.iter().filter_map(|(frame, sample)| {

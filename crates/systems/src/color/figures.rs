@@ -1,6 +1,6 @@
 use wayfix_color_map::ColorId;
 use wayfix_evaluation::{
-    errors::MeanInterval,
+    errors::{MeanInterval, PoseWithTruth, relative_errors},
     report::{Metric, ReportRun},
 };
 use wayfix_system_core::System;
@@ -13,6 +13,8 @@ const MIN_PIXELS: u64 = 20;
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut ColorRun) -> ReportRun {
     let mut metrics = run.totals.errors();
+    let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    metrics.extend(relative_errors(&samples).metrics());
     metrics.extend(classification(run));
     metrics.extend(run.totals.particles());
     let notes = run.system.sample().note("classification rates and pictures").into_iter().collect();
