@@ -78,7 +78,7 @@ pub struct GlobalSearchParams {
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad, or for each peak of the likelihood near a known start; 0 never searches. Default 1.
     pub samples_per_place: f64,
-    /// Number of trajectories that are refined at first; a quarter of them is kept after each round but the last. The rounds weigh 2, 4, 8, … frames, up to all buffered ones. Default 800: a dozen is left.
+    /// Number of trajectories that are refined at first; a quarter of them is kept after each of three rounds. Default 800: a dozen is left.
     pub n_refined_trajectories: usize,
     /// Number of moves of each in the first round; it is doubled in each of the next, which take half the time of the one before. Default 10,
     /// chosen.

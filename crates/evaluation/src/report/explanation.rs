@@ -1,10 +1,5 @@
 /// Figures by the end of their names, or by the beginning where it ends in `_`; the first match counts.
-const MEANINGS: [(&str, &str); 120] = [
-    (
-        "right_share_modulo_symmetry_after_one_turn",
-        "share of the runs that are at the true place, or half a turn of the field from it, after half of their images",
-    ),
-    ("right_share_after_one_turn", "share of the runs that are at the true place after half of their images"),
+const MEANINGS: [(&str, &str); 118] = [
     (
         "right_share_modulo_symmetry",
         "share of the runs that end at the true place, or half a turn of the field from it",

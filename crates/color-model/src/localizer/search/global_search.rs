@@ -28,8 +28,11 @@ use crate::{
     },
 };
 
-/// Side of a tile in the coarse images, in their pixels; in the fine ones it is twice that.
-const COARSE_TILE: u16 = 4;
+/// The images are searched at a quarter and at half of their resolution.
+const SHRINK: [u16; 2] = [4, 2];
+/// Rounds of refinement; the first half of them is coarse. Three of four trajectories are dropped after a round, and the others get twice as many moves and frames, in the last
+/// round all.
+const N_ROUNDS: u32 = 4;
 /// Factors of a step along an axis: on after a success, back and half as far after a failure. [Rosenbrock 1960]
 const STEP_FACTORS: [f64; 2] = [3.0, -0.5];
 
@@ -45,17 +48,6 @@ pub(crate) struct Search<'a, T> {
     detections: Detections,
     /// Width of a peak of the coarse likelihood along x, y (m) and the heading (rad).
     cell: Vector3<f64>,
-}
-
-/// How much the coarse and the fine images are smaller than those of the camera.
-fn shrink(pixels: &PixelLikelihoodParams) -> [u16; 2] {
-    [1, 2].map(|finer| (pixels.tile_pixels / (finer * COARSE_TILE)).max(1))
-}
-
-/// Rounds of refinement; the first half of them is coarse. Three of four trajectories are dropped after a round, and the others get twice as many moves and frames, in the last
-/// round all.
-fn n_rounds(params: &LocalizerParams) -> u32 {
-    params.search.n_buffered_frames.max(2).ilog2()
 }
 
 /// Scale of the first steps of the pose in a round, in cells: half of those of the round before.
@@ -83,7 +75,7 @@ pub(crate) fn check_area(
     params: &LocalizerParams,
 ) -> Result<(), ColorModelError> {
     let side = camera.width().min(camera.height());
-    if params.search.samples_per_place > 0.0 && side < u32::from(shrink(&params.pixels)[0]) {
+    if params.search.samples_per_place > 0.0 && side < u32::from(SHRINK[0]) {
         return Err(ColorModelError::OutOfRange {
             what: "side of the camera's image (pixels)",
             value: side.into(),
@@ -113,8 +105,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         (frames, independent_shares): (Vec<BufferedFrame>, Vec<f64>),
     ) -> Result<Self, ColorModelError> {
         let tile = |shrink: u16| scene.pixels.tile_pixels.div_ceil(shrink);
-        let [coarse, fine] =
-            shrink(scene.pixels).map(|shrink| Level::new(&scene, &frames, shrink, tile(shrink)));
+        let [coarse, fine] = SHRINK.map(|shrink| Level::new(&scene, &frames, shrink, tile(shrink)));
         let levels = [coarse?, fine?];
         let [_, fine] = &levels;
         let mut detections = Detections::new(scene.map);
@@ -154,10 +145,9 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut candidates = drawn.states().to_vec();
         candidates.extend(known.iter().map(|at| self.known(at)));
         retain_distant(&mut candidates, params.n_refined_trajectories, self.peak_width());
-        let n_rounds = n_rounds(self.evidence.params);
-        for round in 0..n_rounds {
-            let n_frames = if round + 1 < n_rounds { 2 << round } else { self.evidence.frames.len() };
-            let effort = Effort { level: usize::from(2 * round >= n_rounds), n_frames };
+        for round in 0..N_ROUNDS {
+            let n_frames = if round + 1 < N_ROUNDS { 2 << round } else { self.evidence.frames.len() };
+            let effort = Effort { level: usize::from(2 * round >= N_ROUNDS), n_frames };
             let mut set = ParticleSet::new(candidates)?;
             let improve = |scratch: &mut _, candidate: &mut Candidate, rng: &mut _| {
                 self.evidence.fit(scratch, candidate, effort, true);
@@ -172,7 +162,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
             };
             set.propagate_each(|| self.evidence.scratch(), improve, rng);
             candidates = set.states().to_vec();
-            let n_kept = (params.n_refined_trajectories >> (2 * (round + 1)).min(2 * n_rounds - 2)).max(1);
+            let n_kept = params.n_refined_trajectories >> (2 * (round + 1)).min(2 * N_ROUNDS - 2);
             retain_distant(&mut candidates, n_kept, self.peak_width());
         }
         let present = known.first().map(|at| at.body);
@@ -307,7 +297,7 @@ impl<'a, T: LightingTracker + Clone + Send + Sync> Search<'a, T> {
         let mut light = T::clone(lights[candidate.light.tracker]);
         let shown = self.evidence.shown(candidate, &locations);
         update_lights(&mut light, candidate.light.light, &shown, params);
-        let spread = first_pose_step(n_rounds(params) - 1);
+        let spread = first_pose_step(N_ROUNDS - 1);
         let location = |_| {
             let mut body = candidate.trajectory.moved(&(self.cell * spread), rng).newest;
             self.area.clamp(&mut body);
