@@ -1,6 +1,6 @@
 use crate::error::{IntegrityError, check};
 
-/// Parameters of [`RelocalizationTest`](crate::RelocalizationTest).
+/// Parameters of [`ShiryaevRobertsTest`](crate::ShiryaevRobertsTest) and [`RelocalizationTest`](crate::RelocalizationTest).
 ///
 /// ```
 /// use wayfix_integrity::RelocalizationParams;

@@ -1,5 +1,6 @@
 use crate::{
     RelocalizationParams,
+    change_test::times,
     error::{IntegrityError, check, check_distance, check_ratio},
 };
 
@@ -281,9 +282,4 @@ impl<H> AlternativeHypothesis<H> {
     pub fn is_previous(&self) -> bool {
         matches!(self.kind, Kind::Previous { .. })
     }
-}
-
-/// `statistic` times the exponential of `log_ratio`, finite; zero stays zero.
-fn times(statistic: f64, log_ratio: f64) -> f64 {
-    if statistic == 0.0 { 0.0 } else { (statistic.ln() + log_ratio).exp().min(f64::MAX) }
 }

@@ -44,9 +44,9 @@ pub(crate) fn real_places(
         let runs: Vec<(&String, u64)> =
             places.iter().flat_map(|place| seeds.iter().map(move |seed| (place, *seed))).collect();
         let outcomes = runs.par_iter().map(|(place, seed)| {
-            let (records, n_images) =
+            let (records, end_of_turn) =
                 twice(folder.join("bags").join(place).as_path()).context(place.to_string())?;
-            field.localize((&records, n_images), start, *seed).context(place.to_string())
+            field.localize((&records, end_of_turn), start, *seed).context(place.to_string())
         });
         metrics.extend(summary(name, &outcomes.collect::<Result<Vec<_>>>()?));
     }
@@ -78,18 +78,19 @@ struct Outcome {
 impl Field {
     fn localize(
         &self,
-        (records, n_images): (&[Record], usize),
+        (records, end_of_turn): (&[Record], Stamp),
         start: Option<StartPose>,
         seed: u64,
     ) -> Result<Outcome> {
         let setup = ColorRunSetup { start, ..ColorRunSetup::new(&self.map, &self.bank, &self.params, seed) };
         let run = run(records, setup, |_| {})?;
         let samples = run.samples();
-        let at = |number: usize| {
-            let (_, sample) = samples.get(number).context("the bag has no true pose at its last image")?;
+        let until = |end: Stamp| {
+            let last = samples.iter().rev().find(|(frame, _)| frame.stamp <= end);
+            let (_, sample) = last.context("the bag has no true pose at its images")?;
             anyhow::Ok(Place { is_right: is_right(sample), is_mirrored: is_mirrored(sample) })
         };
-        let places = [at(n_images - 1)?, at(samples.len().saturating_sub(1))?];
+        let places = [until(end_of_turn)?, until(Stamp::from_nanoseconds(u64::MAX))?];
         let tracking = samples.iter().filter(|(frame, _)| frame.status == LocalizationStatus::Tracking);
         let false_poses: Vec<_> = tracking.map(|(_, at)| at).filter(|at| !is_right(at)).collect();
         Ok(Outcome {
@@ -141,8 +142,8 @@ fn summary(start: &str, outcomes: &[Outcome]) -> Vec<Metric> {
     metrics
 }
 
-/// The records of a bag, and again after them, with the number of images of a turn.
-fn twice(bag: &Path) -> Result<(Vec<Record>, usize)> {
+/// The records of a bag, and again after them, with the stamp of the last image of the first turn.
+fn twice(bag: &Path) -> Result<(Vec<Record>, Stamp)> {
     let (mut records, _) = wayfix_sensor_log::open(bag, &LogOpenOptions::default())?.read_all();
     let images: Vec<Stamp> = records
         .iter()
@@ -159,5 +160,5 @@ fn twice(bag: &Path) -> Result<(Vec<Record>, usize)> {
     };
     records.extend(records.iter().map(later).collect::<Vec<_>>());
     records.sort_by_key(|record| record.stamp);
-    Ok((records, images.len()))
+    Ok((records, last))
 }

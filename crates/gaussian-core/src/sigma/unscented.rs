@@ -2,7 +2,7 @@ use nalgebra::{DefaultAllocator, OMatrix};
 use wayfix_estimation_traits::{Manifold, StateAlloc, Tangent, TangentMatrix, UpdateAlloc};
 
 use crate::{
-    Gaussian, GaussianError, IterationError, SigmaPoints, UnscentedParams,
+    Gaussian, GaussianError, IterationError, SigmaPoints, UnscentedParams, gaussian::check_dimension,
     sigma::weighted_mean::weighted_mean_near, symmetrize, weighted_mean,
 };
 
@@ -61,15 +61,17 @@ where
         Self::from_images(gaussian, &sigma, &images)
     }
 
-    /// The same from images of the sigma points that exist already.
+    /// The same from images of the sigma points of `gaussian`, in their order.
     ///
     /// # Errors
-    /// Those of [`weighted_mean`], which returns its last estimate.
+    /// When images, points and weights differ in number; those of [`weighted_mean`], which returns its last estimate.
     pub fn from_images(
         gaussian: &Gaussian<X>,
         sigma: &SigmaPoints<X>,
         images: &[Z],
     ) -> Result<Self, IterationError<Z>> {
+        check_dimension("images", sigma.points.len(), images.len())?;
+        check_dimension("covariance weights", images.len(), sigma.covariance_weights.len())?;
         let centre = images.first().ok_or(GaussianError::Empty { what: "points" })?;
         let mean = weighted_mean_near(centre, images, &sigma.mean_weights)?;
         let points = sigma.points.iter().zip(images).zip(&sigma.covariance_weights);

@@ -5,7 +5,9 @@ use approx::abs_diff_eq;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use wayfix_integrity::{CusumTest, ProbabilityRatioTest, RatioVerdict, RelocalizationParams};
+use wayfix_integrity::{
+    CusumTest, ProbabilityRatioTest, RatioVerdict, RelocalizationParams, ShiryaevRobertsTest,
+};
 
 const SEED: u64 = 41;
 const N_RUNS: usize = 1000;
@@ -38,18 +40,16 @@ fn cusum(mean: f64, threshold: f64) -> (f64, f64) {
     })
 }
 
-/// The plain test over distance: $`R ← (R + d) Λ`$, a change when $`R ≥ A`$; [`wayfix_integrity::RelocalizationTest`] splits $`R`$ among its alternatives.
-/// Without a change, $`R`$ minus the distance is a martingale: the mean distance to a false alarm is at least $`A`$.
-/// [Pollak 1985; Tartakovsky, Nikiforov & Basseville 2015, Section 6.5]
 fn shiryaev_roberts(mean: f64, distance: f64, false_alarms_per_km: f64) -> (f64, f64) {
     let params = RelocalizationParams { false_alarms_per_km, kidnappings_per_km: 1e3, ..Default::default() };
-    let (mut statistic, mut current) = (0.0, 0);
+    let fresh = ShiryaevRobertsTest::new(params).unwrap();
+    let (mut test, mut current) = (fresh, 0);
     mean_run_length(mean, |run, ratio| {
         if run != current {
-            (statistic, current) = (0.0, run);
+            (test, current) = (fresh, run);
         }
-        statistic = (statistic + distance) * ratio.exp();
-        statistic >= params.threshold()
+        test.observe(distance, ratio).unwrap();
+        test.is_change()
     })
 }
 

@@ -69,7 +69,7 @@ fn compare_with_batch(batch: &TrajectoryErrors, summary: &mut ReportRun) {
     summary.notes.extend(note);
 }
 
-/// Errors of the path and of odometry alone. Names as in the contract of `docs/architecture.md`.
+/// Errors of the path and of odometry alone.
 pub(crate) fn path_metrics(
     samples: &[(StampedEstimate, PoseWithTruth)],
     truth_is_estimate: bool,

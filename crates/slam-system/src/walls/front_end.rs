@@ -116,7 +116,7 @@ impl FrontEnd for WallSlamFrontEnd {
 
     fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
         match &record.data {
-            RecordData::OdometryIncrement(increment) => {
+            RecordData::OdometryIncrement(increment) if !self.moves_by_velocity => {
                 self.take_increment(record.stamp, increment, estimator)
             }
             RecordData::Velocity(velocity) if self.moves_by_velocity => {
@@ -124,7 +124,7 @@ impl FrontEnd for WallSlamFrontEnd {
                 self.advance_to(record.stamp, estimator);
                 self.odometry.hold(record.stamp, *velocity)
             }
-            RecordData::Velocity(_) | RecordData::Ackermann(_) => {
+            RecordData::OdometryIncrement(_) | RecordData::Velocity(_) | RecordData::Ackermann(_) => {
                 estimator.events.count("second_odometry_source_ignored");
                 Ok(())
             }

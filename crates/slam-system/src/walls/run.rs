@@ -47,13 +47,11 @@ pub fn run_streamed<R: Borrow<Record>>(
     let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
     };
-    // A log may contain the same motion twice.
-    let moves_by_velocity = first(|data| matches!(data, RecordData::OdometryIncrement(_))).is_none();
-    if moves_by_velocity && first(|data| matches!(data, RecordData::Velocity(_))).is_none() {
+    let Some(moves_by_velocity) = moves_by_velocity(overview) else {
         bail!(
             "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
-    }
+    };
     check_overlap(overview, ODOMETRY, SCANS)?;
     let track = ReferencePath::from_records_or_estimates(overview);
     let known = TrueStartPose::at(scan.stamp, &track, overview).filter(|_| params.start_pose.is_none());
@@ -98,9 +96,19 @@ pub fn run_on<R: Borrow<Record>>(
     observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let mut system = WallSystem::resume(params.clone(), saved, association)?;
+    if let Some(by_velocity) = moves_by_velocity(overview) {
+        system.front_end.moves_by_velocity = by_velocity;
+    }
     warn_of_ended_odometry(system.events(), overview, SCANS, SCANS_ALONE);
     let track = ReferencePath::from_records_or_estimates(overview);
     drive_through(system, track, truth::true_walls(overview), records, observe)
+}
+
+/// Whether velocities move the robot, or increments do: a log may have the same motion twice, and increments win. `None` without both.
+fn moves_by_velocity(overview: &[Record]) -> Option<bool> {
+    let has = |is: fn(&RecordData) -> bool| overview.iter().any(|record| is(&record.data));
+    let by_increments = has(|data| matches!(data, RecordData::OdometryIncrement(_)));
+    (by_increments || has(|data| matches!(data, RecordData::Velocity(_)))).then_some(!by_increments)
 }
 
 /// What moves the robot without odometry.

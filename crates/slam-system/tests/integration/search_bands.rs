@@ -19,6 +19,6 @@ fn expected_walls_are_drawn_with_their_search_bands() {
     let with_bands = titles(&params);
     let last = with_bands.last().expect("pictures");
     let counts: Vec<usize> = last.split(' ').filter_map(|word| word.parse().ok()).collect();
-    assert!(last.contains("expected walls") && counts[0] >= counts[1] && counts[1] > 0, "{last}");
+    assert!(last.contains("predicted walls") && counts[0] >= counts[1] && counts[1] > 0, "{last}");
     assert_eq!(titles(&WallSlamParams::default()), with_bands[..with_bands.len() - 1]);
 }

@@ -8,7 +8,7 @@ use wayfix_system_core::System;
 
 use super::{CmlRun, CmlTask, CmlViewResult};
 
-/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report.
 pub fn summarize(run: &mut CmlRun) -> ReportRun {
     let mut metrics = errors(run);
     let frames = run.system.frames();

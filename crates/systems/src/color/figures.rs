@@ -10,14 +10,19 @@ use super::{ClassificationCounts, ColorRun, rate_of};
 /// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;
 
-/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report.
 pub fn summarize(run: &mut ColorRun) -> ReportRun {
     let mut metrics = run.totals.errors();
     let samples: Vec<PoseWithTruth> = run.samples().into_iter().map(|(_, sample)| sample).collect();
     metrics.extend(relative_errors(&samples).metrics());
     metrics.extend(classification(run));
     metrics.extend(run.totals.particles());
-    let notes = run.system.sample().note("classification rates and pictures").into_iter().collect();
+    let notes = run
+        .system
+        .sample()
+        .note("classification rates, relative pose errors and pictures")
+        .into_iter()
+        .collect();
     let (timings, events) = (run.totals.timings(), run.system.events().counts());
     ReportRun { metrics, timings, events, notes, ..ReportRun::default() }
 }

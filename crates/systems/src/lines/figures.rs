@@ -2,7 +2,7 @@ use super::{LineExtractionSystem, WallScore};
 use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_system_core::System;
 
-/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report.
 pub fn summarize(system: &mut LineExtractionSystem) -> ReportRun {
     let totals = system.totals.clone();
     let n_used = totals.n_used as f64;

@@ -5,7 +5,7 @@ use wayfix_system_core::System;
 
 use super::TrackRun;
 
-/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report.
 pub fn summarize(run: &mut TrackRun) -> ReportRun {
     let (score, totals) = (run.system.score(), *run.system.totals());
     let judged = [

@@ -8,7 +8,7 @@ use wayfix_evaluation::{
 
 use super::{ViewTrial, ViewsRun};
 
-/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report.
 pub fn summarize(run: &ViewsRun) -> ReportRun {
     let trials = &run.trials;
     let count = |is: &dyn Fn(&ViewTrial) -> bool| trials.iter().filter(|trial| is(trial)).count();

@@ -7,7 +7,7 @@ use super::window::{SIDE, WindowPlace};
 use crate::RgbImage;
 
 impl CorrelationTracker {
-    /// WindowPlace at which the trusted filter recognizes the target, if any: in the window or, after some images without it, at the next place of a scan.
+    /// Where the trusted filter recognizes the target, if any: in the window or, after some images without it, at the next place of a scan.
     pub(super) fn recognized_elsewhere(
         &self,
         picture: &RgbImage,
@@ -48,7 +48,7 @@ impl CorrelationTracker {
         (self.n_lost, self.n_without_evidence, self.n_recentering) = (0, 0, N_RECENTERING_FRAMES);
     }
 
-    /// WindowPlace at which a filter recognizes the target in the window `around` a pose, if any.
+    /// Where a filter recognizes the target in the window `around` a pose, if any.
     fn recognized_by(
         &self,
         filter: &Spectrum,

@@ -11,12 +11,12 @@ pub(in super::super) struct SearchBandScan {
     n_found: usize,
     echoes: Vec<(f64, f64)>,
     segments: Vec<Vec<(f64, f64)>>,
-    /// Outlines.
+    /// Outlines of the predictions. The search adds the noise of the segment.
     bands: Vec<Vec<(f64, f64)>>,
 }
 
 impl SearchBandScan {
-    /// Takes a scan if more walls were found in it than in the one before. `points` are in the frame of the robot, all else in that of a laser at `mount`.
+    /// Takes a scan if more walls were found in it than in the one that is kept. `points` are in the frame of the robot, all else in that of a laser at `mount`.
     pub(in super::super) fn offer<'a>(
         &mut self,
         n_found: usize,
@@ -53,7 +53,11 @@ impl SearchBandScan {
     /// The picture; `None` if no expected wall was found.
     pub(super) fn plot(&self) -> Option<MapPlot> {
         (self.n_found > 0).then(|| MapPlot {
-            title: format!("A scan with {} expected walls, {} of them found", self.bands.len(), self.n_found),
+            title: format!(
+                "A scan with the 2σ bands of {} predicted walls, {} of them found",
+                self.bands.len(),
+                self.n_found
+            ),
             echoes: self.echoes.clone(),
             walls: self.segments.clone(),
             bands: self.bands.clone(),
