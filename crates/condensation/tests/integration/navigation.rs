@@ -10,7 +10,8 @@ use wayfix_condensation::{
     ActionSelection, AppearanceLearningParams, AppearanceModel, ColorMeanStdDescriptor, DiscreteStateSpace,
     DominantGraysDescriptor, Fft6Descriptor, GlobalDescriptor, LightChange, NavigationEnvironment,
     NavigationOutcome, NavigationReport, Navigator, NavigatorParams, RgbImage, SceneViews,
-    StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match, mapped, shifted,
+    ShortestPathLengths, StateDescriptorTable, ViewGrid, ViewLocalizer, ViewLocalizerParams, light_match,
+    mapped, shifted,
 };
 
 use crate::common::{Drive, place_graph::PlaceGraph, scene};
@@ -165,6 +166,9 @@ impl NavigationEnvironment<usize> for Walk {
 
 #[test]
 fn a_goal_without_a_way_is_unreachable() {
+    let one_way = PlaceGraph::new(3, &[(0, 1), (1, 2)]);
+    let routes = ShortestPathLengths::to_goal(&one_way, 1).unwrap();
+    assert_eq!((routes.distance(0), routes.distance(2)), (Some(1), None));
     let graph = PlaceGraph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]);
     let places: Vec<Vec<f64>> = (0..4).map(|state| vec![10.0 * f64::from(state)]).collect();
     let appearance = Arc::new(

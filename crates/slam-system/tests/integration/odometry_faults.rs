@@ -153,6 +153,29 @@ fn motion_told_twice_moves_once() {
 }
 
 #[test]
+fn resumed_map_follows_the_odometry_of_its_log() {
+    let records = drive(&every_step(), 0.0);
+    let (before, after) = records.split_at(records.len() / 2);
+    let saved = run(before, &WallSlamParams::default()).system.save();
+    let velocity = |record: &Record| match record.data {
+        RecordData::OdometryIncrement(moved) => {
+            let velocity = Velocity { linear: 10.0 * moved.x(), angular: 10.0 * moved.heading() };
+            Record { data: RecordData::Velocity(velocity), ..record.clone() }
+        }
+        _ => record.clone(),
+    };
+    let after: Vec<Record> = after.iter().map(velocity).collect();
+    let mut resumed =
+        walls::run_on(saved, &after, &after, &WallSlamParams::default(), None, |_| {}).expect("a usable log");
+    assert_eq!(resumed.events().get("second_odometry_source_ignored"), 0);
+    let travelled = |run: &WallRun| {
+        let reckoned: Vec<_> = run.system.stamped_estimates().iter().map(|at| at.dead_reckoning).collect();
+        reckoned.windows(2).map(|pair| (pair[1].translation - pair[0].translation).norm()).sum::<f64>()
+    };
+    assert!(travelled(&resumed) > 1.0, "{} m", travelled(&resumed));
+}
+
+#[test]
 fn odometry_that_ends_early_is_said() {
     let mut run = run(&drive(&every_step()[..N_STEPS / 2], 0.0), &WallSlamParams::default());
     assert_eq!(run.events().get("odometry_ends_early"), 1);
