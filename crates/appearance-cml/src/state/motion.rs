@@ -2,7 +2,6 @@ use nalgebra::Matrix3;
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_gaussian_core::{Gaussian, symmetrize};
 
-use super::odometry_noise::transition;
 use crate::AppearanceMapError;
 
 /// Odometry between two views: the accumulated increment and the covariance of its error, in the body frame at its end.
@@ -36,7 +35,7 @@ impl Motion {
     /// This motion followed by `next`.
     pub(crate) fn then(&self, next: &Self) -> Result<Self, AppearanceMapError> {
         let increment = self.increment.compose(&next.increment);
-        let transition = transition(&next.increment);
+        let transition = next.increment.inverse().adjoint();
         let mut covariance = transition * self.covariance * transition.transpose() + next.covariance;
         symmetrize(&mut covariance);
         let is_finite = increment.is_finite() && covariance.iter().all(|entry| entry.is_finite());
@@ -61,7 +60,7 @@ impl Motion {
     /// The belief at the start of the motion, from a belief at its end.
     pub(crate) fn undone(&self, belief: &Gaussian<Pose2<f64>>) -> Gaussian<Pose2<f64>> {
         let back = self.increment.inverse();
-        let transition = transition(&back);
+        let transition = self.increment.adjoint();
         let mut covariance = transition * (belief.covariance() + self.covariance) * transition.transpose();
         symmetrize(&mut covariance);
         Gaussian::from_parts_unchecked(belief.mean().compose(&back), covariance)
@@ -80,7 +79,7 @@ impl MotionModel for RecordedMotion {
     }
 
     fn jacobian(&self, _: &Pose2<f64>, motion: &Motion) -> Matrix3<f64> {
-        transition(&motion.increment)
+        motion.increment.inverse().adjoint()
     }
 
     fn noise(&self, _: &Pose2<f64>, motion: &Motion) -> Matrix3<f64> {

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 
 use crate::{AppearanceMapError, check};
@@ -75,23 +75,14 @@ impl MotionModel for OdometryNoise {
         pose.compose(increment)
     }
 
+    /// $`∂(x ∘ u)/∂x = \mathrm{Ad}_{u^{-1}}`$ between body frames.
     fn jacobian(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
-        transition(increment)
+        increment.inverse().adjoint()
     }
 
     fn noise(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
         self.covariance(increment)
     }
-}
-
-/// $`∂(x ∘ u)/∂x`$ between body frames.
-pub(crate) fn transition(increment: &Pose2<f64>) -> Matrix3<f64> {
-    let back = increment.rotation_matrix().transpose();
-    let swept = back * Vector2::new(-increment.y(), increment.x());
-    let mut matrix = back.to_homogeneous();
-    matrix[(0, 2)] = swept.x;
-    matrix[(1, 2)] = swept.y;
-    matrix
 }
 
 #[cfg(test)]

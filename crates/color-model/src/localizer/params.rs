@@ -73,8 +73,8 @@ pub struct LocalizerParams {
     serde(default, deny_unknown_fields)
 )]
 pub struct GlobalSearchParams {
-    /// Number of frames that are kept for a search. The robot is searched for after 1, 2, 4, … frames; up to this number a search replaces
-    /// the place, later it proposes others. Default 16: at ten images a second, what a robot sees while it turns by a quarter of a circle.
+    /// Number of frames that are kept for a search. A search runs after 1, 4, 16, … frames up to this number, and after this number: it replaces the
+    /// place. Later ones propose others. Default 16: at ten images a second, what a robot sees while it turns by a quarter of a circle.
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad, or for each peak of the likelihood near a known start; 0 never searches. Default 1.
     pub samples_per_place: f64,

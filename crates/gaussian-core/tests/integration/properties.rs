@@ -107,7 +107,7 @@ proptest! {
     #[test]
     fn no_matrix_makes_a_gaussian_panic(entries in proptest::collection::vec(any::<f64>(), 9), n in 0_usize..4) {
         let covariance = DMatrix::from_fn(n, n, |i, j| entries[3 * i + j]);
-        let symmetric = (&covariance + covariance.transpose()) * 0.5;
+        let symmetric = covariance.symmetric_part();
         for matrix in [covariance, symmetric] {
             if let Ok(gaussian) = Gaussian::new(DVector::zeros(n), matrix) {
                 prop_assert!(gaussian.covariance().clone().cholesky().is_some());

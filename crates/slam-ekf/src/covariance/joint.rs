@@ -80,7 +80,7 @@ impl JointCovariance {
                 self.storage[(column, row)] = moved[row];
             }
         }
-        let robot = (&robot + robot.transpose()) * 0.5 + self.rounding(jacobian);
+        let robot = robot.symmetric_part() + self.rounding(jacobian);
         self.storage.view_mut((0, 0), (R::DIM, R::DIM)).copy_from(&robot);
     }
 
@@ -133,7 +133,7 @@ impl JointCovariance {
             }
         }
         let own = robot_jacobian * self.robot::<R>() * robot_jacobian.transpose() + noise;
-        let own = (&own + own.transpose()) * 0.5 + self.rounding(robot_jacobian);
+        let own = own.symmetric_part() + self.rounding(robot_jacobian);
         self.storage.view_mut((offset, offset), (L::DIM, L::DIM)).copy_from(&own);
         self.dimension += L::DIM;
         offset

@@ -83,7 +83,7 @@ impl PointMapGaussian {
         }
         let (what, index, wanted) = ("joint covariance of a map of size", rows.len(), "positive definite");
         let value = covariance.diagonal().iter().copied().fold(f64::INFINITY, f64::min);
-        let symmetric = (&covariance + covariance.transpose()) * 0.5;
+        let symmetric = covariance.symmetric_part();
         let cholesky = symmetric.cholesky().filter(|_| covariance.iter().all(|entry| entry.is_finite()));
         let error = SlamSmootherError::OutOfRange { what, index, value, wanted };
         Ok(cholesky.ok_or(error)?.inverse())

@@ -235,11 +235,11 @@ pub(super) fn inverse<const N: usize>(
     what: &'static str,
     index: usize,
 ) -> Result<nalgebra::SMatrix<f64, N, N>, SlamSmootherError> {
-    let symmetric = (covariance + covariance.transpose()) * 0.5;
+    let symmetric = covariance.symmetric_part();
     let cholesky =
         nalgebra::Cholesky::new(symmetric).filter(|_| covariance.iter().all(|entry| entry.is_finite()));
     let (value, wanted) = (covariance.diagonal().min(), "positive definite");
     let error = SlamSmootherError::OutOfRange { what, index, value, wanted };
     let inverse = cholesky.ok_or(error)?.inverse();
-    Ok((inverse + inverse.transpose()) * 0.5)
+    Ok(inverse.symmetric_part())
 }

@@ -124,7 +124,7 @@ impl RelativeMotion {
         let Self { motion, covariance, drift_jacobian, .. } = *self;
         // Q (1 + Λ Q)⁻¹ is (Q⁻¹ + Λ)⁻¹, also where odometry is certain.
         let posterior = covariance * (Matrix3::identity() + found.information * covariance).try_inverse()?;
-        let posterior = (posterior + posterior.transpose()) * 0.5;
+        let posterior = posterior.symmetric_part();
         let by_drift_left = drift_jacobian - posterior * found.information * drift_jacobian;
         let correction = posterior * found.information_vector + by_drift_left * drift_change;
         let motion = motion.retract(&correction);

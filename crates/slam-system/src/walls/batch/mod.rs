@@ -243,7 +243,7 @@ fn add_measured_pose(
 /// $`(Σ + σ_0^2 I)^{-1}`$; a matrix of NaN, which the graph refuses, if there is none.
 fn information<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let floored = covariance + SMatrix::<f64, N, N>::identity() * SMALLEST_SIGMA.powi(2);
-    let symmetric = (floored + floored.transpose()) * 0.5;
+    let symmetric = floored.symmetric_part();
     nalgebra::Cholesky::new(symmetric)
         .map_or(SMatrix::repeat(f64::NAN), |cholesky| cholesky.inverse())
         .symmetric_part()
