@@ -179,6 +179,6 @@ fn flop(symbolic: &SymbolicCholesky<usize>) -> f64 {
 
 /// Time that this thread has computed, in milliseconds, whatever else the machine does.
 fn computing_ms() -> f64 {
-    let schedule = fs::read_to_string("/proc/thread-self/schedstat").unwrap();
-    schedule.split(' ').next().unwrap().parse::<f64>().unwrap() * 1e-6
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
 }

@@ -37,5 +37,5 @@ pub(crate) fn clipped(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut eigen = matrix.clone().symmetric_eigen();
     eigen.eigenvalues.apply(|value| *value = value.max(0.0));
     let clipped = eigen.recompose();
-    (&clipped + clipped.transpose()) * 0.5
+    clipped.symmetric_part()
 }

@@ -65,7 +65,7 @@ impl Marginals<'_> {
     /// [`SmootherError::UnknownId`], [`SmootherError::OutOfMemory`]
     pub fn joint(&self, variables: &[usize]) -> Result<DMatrix<f64>, SmootherError> {
         let joint = self.blocks(variables, variables)?;
-        Ok((&joint + joint.transpose()) * 0.5)
+        Ok(joint.symmetric_part())
     }
 
     /// $`\ln \det H`$ over all coordinates that are not fixed: with the cost it tells how likely the noise parameters are (Laplace).

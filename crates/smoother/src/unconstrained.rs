@@ -73,7 +73,7 @@ fn free_directions(structure: &mut Structure, scale: &[f64]) -> Result<(DMatrix<
             column.iter_mut().zip(product.iter().zip(&root)).for_each(|(to, (from, root))| *to = from / root);
         }
         let small = basis.tr_mul(&image);
-        let eigen = ((&small + small.transpose()) * 0.5).symmetric_eigen();
+        let eigen = small.symmetric_part().symmetric_eigen();
         let free: Vec<usize> = (0..width).filter(|k| eigen.eigenvalues[*k] <= ROUNDING).collect();
         let complete = free.len() < width || width == n;
         if complete || width >= MOST_DIRECTIONS {

@@ -27,7 +27,7 @@ pub(super) const TRACKING_PROBABILITY: f64 = 0.95;
 /// Localizes in a coloured map and learns the light at the same time: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 ///
 /// A particle is a camera location and, conditioned on it, a tracker of the light `T`. The odometry model `M` and the likelihood `L` are parameters too.
-/// After 1, 4, 16, … frames, and then every few seconds, a global search proposes places; [`RelocalizationTest`] decides between them and the present one.
+/// After 1, 4 and 16 frames, and then every few seconds, a global search proposes places; [`RelocalizationTest`] decides between them and the present one.
 ///
 /// ```
 /// use std::sync::Arc;

@@ -73,8 +73,8 @@ pub struct LocalizerParams {
     serde(default, deny_unknown_fields)
 )]
 pub struct GlobalSearchParams {
-    /// Number of frames that are kept for a search. A search runs after 1, 4, 16, … frames up to this number, and after this number: it replaces the
-    /// place. Later ones propose others. Default 16: at ten images a second, what a robot sees while it turns by a quarter of a circle.
+    /// Number of frames that are kept for a search. Searches run after 1, 4, 16, … frames and after this number; the best place becomes the present one. Later
+    /// searches propose alternatives. Default 16: at ten images a second, what a robot sees while it turns by a quarter of a circle.
     pub n_buffered_frames: usize,
     /// Number of trajectories drawn for each cell of the map, 0.3 m × 0.3 m × the angle of two tiles, at most 0.3 rad, or for each peak of the likelihood near a known start; 0 never searches. Default 1.
     pub samples_per_place: f64,
@@ -97,6 +97,14 @@ impl Default for GlobalSearchParams {
             n_first_round_moves: 10,
             search_interval: 3.0,
         }
+    }
+}
+
+impl GlobalSearchParams {
+    /// Whether a search runs after so many frames, at the start.
+    pub(crate) fn is_start_search(&self, n_frames: usize) -> bool {
+        let is_power_of_four = n_frames.is_power_of_two() && n_frames.ilog2().is_multiple_of(2);
+        n_frames == self.n_buffered_frames || (is_power_of_four && n_frames < self.n_buffered_frames)
     }
 }
 
@@ -168,4 +176,20 @@ impl LocalizerParams {
 
 fn check(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), ColorModelError> {
     if value >= least && value <= most { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn searches_at_the_start_end_with_a_full_buffer() {
+        let searches = |n_buffered_frames: usize| -> Vec<usize> {
+            let params = GlobalSearchParams { n_buffered_frames, ..GlobalSearchParams::default() };
+            (1..100).filter(|n| params.is_start_search(*n)).collect()
+        };
+        assert_eq!(searches(16), [1, 4, 16]);
+        assert_eq!(searches(10), [1, 4, 10]);
+        assert_eq!(searches(1), [1]);
+    }
 }

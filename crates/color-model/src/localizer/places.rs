@@ -63,9 +63,7 @@ where
         let n_frames = self.n_updates + 1;
         let is_start = n_frames <= params.n_buffered_frames;
         let is_late = self.since_search + self.cameras[0].delta.seconds >= params.search_interval;
-        let is_power_of_four = n_frames.is_power_of_two() && n_frames.ilog2() % 2 == 0;
-        let is_due =
-            if is_start { is_power_of_four || n_frames == params.n_buffered_frames } else { is_late };
+        let is_due = if is_start { params.is_start_search(n_frames) } else { is_late };
         let is_on = !self.params.relocalization.is_off();
         if params.samples_per_place == 0.0 || !is_due || !(is_start || is_on) {
             return Ok(None);

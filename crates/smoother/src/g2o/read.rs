@@ -211,5 +211,5 @@ fn in_the_body<P: RigidPose>(
     let rotation = sensor.rotation_part();
     let turn = DMatrix::from_fn(P::N, P::N, |i, k| rotation[(i, k)]);
     let turned = &turn * information * turn.transpose();
-    (P::point_at(&(rotation * position + sensor.translation_part())), (&turned + turned.transpose()) * 0.5)
+    (P::point_at(&(rotation * position + sensor.translation_part())), turned.symmetric_part())
 }

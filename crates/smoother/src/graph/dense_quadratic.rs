@@ -56,6 +56,14 @@ impl DenseQuadratic {
         }
     }
 
+    /// Whether it clearly determines every coordinate: no pivot has lost half of its digits.
+    pub(super) fn is_definite(&self) -> bool {
+        let Some(cholesky) = self.hessian.clone().cholesky() else { return false };
+        let pivots = cholesky.l_dirty().diagonal().map(|root| root * root);
+        let lost = f64::EPSILON.sqrt();
+        pivots.iter().zip(&self.hessian.diagonal()).all(|(pivot, entry)| *pivot > lost * entry)
+    }
+
     /// Without the first `n` coordinates, at their minimum: the Schur complement. `None` when they have no minimum.
     pub(crate) fn without_first(self, n: usize) -> Option<Self> {
         if n == 0 {
@@ -67,7 +75,7 @@ impl DenseQuadratic {
         let first = self.gradient.rows(0, n).into_owned();
         let solved = cholesky.solve(&coupling);
         let hessian = self.hessian.view((n, n), (rest, rest)) - coupling.transpose() * &solved;
-        let hessian = (&hessian + hessian.transpose()) * 0.5;
+        let hessian = hessian.symmetric_part();
         let gradient = self.gradient.rows(n, rest) - solved.transpose() * &first;
         let constant = self.constant - first.dot(&cholesky.solve(&first));
         Some(Self { offsets: Vec::new(), hessian, gradient, constant })

@@ -1,5 +1,7 @@
 use super::{
     batch::{AnyBatch, Batch},
+    dense_quadratic::DenseQuadratic,
+    known_minimum::KnownMinimum,
     structure::Structure,
     values::Values,
 };
@@ -34,6 +36,8 @@ pub struct Graph {
     pub(super) next_residual: usize,
     /// Ordering and symbolic factorization, kept until the graph changes.
     pub(crate) structure: Option<Structure>,
+    /// Set while the values are known to be a minimum.
+    pub(crate) minimum: Option<KnownMinimum>,
 }
 
 /// A residual of a [`Graph`].
@@ -67,6 +71,7 @@ impl Graph {
         } else {
             (self.fixed[id.index], self.dims[id.index]) = (false, dim);
         }
+        self.minimum = self.minimum.take().map(|minimum| minimum.with_variable(id.index));
         id
     }
 
@@ -89,6 +94,7 @@ impl Graph {
             return Err(SmootherError::Shape { what: "the variable", residual: id.index, expected, got });
         }
         *place = value;
+        self.minimum = None;
         Ok(())
     }
 
@@ -98,7 +104,7 @@ impl Graph {
     /// [`SmootherError::UnknownId`]
     pub fn fix<X: Variable>(&mut self, id: VariableId<X>) -> Result<(), SmootherError> {
         self.value(id)?;
-        self.structure = None;
+        self.forget();
         self.fixed[id.index] = true;
         Ok(())
     }
@@ -128,6 +134,7 @@ impl Graph {
         let mut single = Batch::<R>::default();
         single.push(residual, keys, information, index);
         single.check(&self.values)?;
+        self.minimum = self.minimum.take().and_then(|minimum| self.minimum_with_residual(minimum, &single));
 
         let found = self.batches.iter_mut().position(|batch| batch.as_any_mut().is::<Batch<R>>());
         let batch = found.unwrap_or_else(|| {
@@ -154,7 +161,9 @@ impl Graph {
         information::check(&R::Variables::information_matrix(&information), id.index)?;
         let batch =
             self.batches.get_mut(id.batch).and_then(|batch| batch.as_any_mut().downcast_mut::<Batch<R>>());
-        batch.ok_or(SmootherError::UnknownId)?.set_information(id.index, information)
+        batch.ok_or(SmootherError::UnknownId)?.set_information(id.index, information)?;
+        self.minimum = None;
+        Ok(())
     }
 
     /// Gives a residual a robust kernel.
@@ -164,7 +173,11 @@ impl Graph {
     pub fn set_kernel(&mut self, id: ResidualId, kernel: Kernel) -> Result<(), SmootherError> {
         kernel.validate()?;
         let batch = self.batches.get_mut(id.batch).ok_or(SmootherError::UnknownId)?;
-        if batch.set_kernel(id.index, kernel) { Ok(()) } else { Err(SmootherError::UnknownId) }
+        if !batch.set_kernel(id.index, kernel) {
+            return Err(SmootherError::UnknownId);
+        }
+        self.minimum = None;
+        Ok(())
     }
 
     /// Takes a residual back.
@@ -176,7 +189,7 @@ impl Graph {
         if !batch.remove(id.index) {
             return Err(SmootherError::UnknownId);
         }
-        self.structure = None;
+        self.forget();
         Ok(())
     }
 
@@ -227,6 +240,9 @@ impl Graph {
 
     /// Moves all variables that are not fixed to a minimum of the cost.
     ///
+    /// Takes no iteration if an earlier call converged with these or stricter parameters, and only variables and residuals ([`add`](Self::add)) that are zero
+    /// at the values were added since. [`Params::graduated`] always iterates.
+    ///
     /// # Errors
     /// * [`SmootherError::WithoutResidual`], [`SmootherError::Unconstrained`] with the names of what is not determined.
     /// * [`SmootherError::NotFinite`], [`SmootherError::IllConditioned`], [`SmootherError::Diverged`], [`SmootherError::OutOfMemory`].
@@ -243,6 +259,26 @@ impl Graph {
     /// As [`optimize`](Self::optimize).
     pub fn marginals(&mut self) -> Result<Marginals<'_>, SmootherError> {
         marginals::at_present(self)
+    }
+
+    /// The graph is another one: nothing that was computed of it holds.
+    pub(super) fn forget(&mut self) {
+        (self.structure, self.minimum) = (None, None);
+    }
+
+    /// The minimum once a residual is added; `None` if it moves, or if the residual leaves a new variable free.
+    fn minimum_with_residual(&self, minimum: KnownMinimum, single: &impl AnyBatch) -> Option<KnownMinimum> {
+        let mut minimum = minimum.with_cost(single.cost(&self.values, 1.0))?;
+        let named: Vec<usize> = single.variables().flatten().copied().collect();
+        let new = minimum.take_without_residual(&named);
+        if !new.is_empty() {
+            let mut is_new = vec![false; self.dims.len()];
+            new.iter().for_each(|index| is_new[*index] = true);
+            let mut quadratic = DenseQuadratic::zeros(&new, &self.dims);
+            single.linearize_chosen(&self.values, &is_new, &mut quadratic);
+            quadratic.is_definite().then_some(())?;
+        }
+        Some(minimum)
     }
 
     pub(crate) fn cost_at(&self, values: &Values, mu: f64) -> f64 {

@@ -35,7 +35,7 @@ impl Graph {
         }
         information::check(&information, residual)?;
         let points = variables.iter().map(|variable| self.values.linear_point(*variable)).collect();
-        let (hessian, gradient) = ((&information + information.transpose()) * 0.5, DVector::zeros(n));
+        let (hessian, gradient) = (information.symmetric_part(), DVector::zeros(n));
         self.add_prior(LinearPrior {
             variables: variables.to_vec(),
             points,
@@ -87,6 +87,6 @@ impl Graph {
             priors.push(prior, self.next_residual);
         }
         self.next_residual += 1;
-        self.structure = None;
+        self.forget();
     }
 }

@@ -24,7 +24,7 @@ impl Graph {
             priors.flat_map(|batch| batch.variables()).any(|named| named.iter().any(|index| chosen[*index]));
         let own = self.batches.iter_mut().filter(|batch| !batch.is_of_marginalization());
         let n_residuals: usize = own.map(|batch| batch.remove_chosen(&chosen)).sum();
-        self.structure = None;
+        self.forget();
         if is_in_a_prior {
             return self.marginalize(variables);
         }
@@ -129,7 +129,7 @@ fn split(graph: &Graph, chosen: &[bool]) -> (Vec<usize>, Vec<usize>) {
 
 /// Removes the chosen variables; how many.
 fn discard(graph: &mut Graph, chosen: &[bool]) -> usize {
-    graph.structure = None;
+    graph.forget();
     for variable in (0..chosen.len()).filter(|index| chosen[*index]) {
         graph.values.remove(variable);
         graph.fixed[variable] = true; // no rows in the system

@@ -5,6 +5,7 @@ pub(crate) mod dense_quadratic;
 mod factor_graph;
 mod gaussian;
 pub(crate) mod keys;
+pub(crate) mod known_minimum;
 mod linear_prior;
 mod marginalize;
 pub(crate) mod structure;

@@ -4,7 +4,7 @@ use super::{
 };
 use crate::{
     SmootherError,
-    graph::{Graph, structure::Structure},
+    graph::{Graph, known_minimum::KnownMinimum, structure::Structure},
 };
 
 /// Each stage divides μ by this. [Yang et al. 2020, Remark 5]
@@ -15,6 +15,9 @@ const STAGE: f64 = 1.4;
 /// The values are those of before if it fails.
 pub(crate) fn run(graph: &mut Graph, params: &Params) -> Result<Summary, SmootherError> {
     params.validate()?;
+    if let Some(summary) = at_minimum(graph, params) {
+        return Ok(summary);
+    }
     let mut structure = match graph.structure.take() {
         Some(structure) => structure,
         None => Structure::new(graph)?,
@@ -25,7 +28,18 @@ pub(crate) fn run(graph: &mut Graph, params: &Params) -> Result<Summary, Smoothe
         graph.values = before;
     }
     graph.structure = Some(structure);
+    let minimum = result.as_ref().ok().filter(|summary| summary.stop == Stop::Converged);
+    graph.minimum = minimum.map(|summary| KnownMinimum::new(summary.cost, params.relative_decrease));
     result
+}
+
+/// Nothing to do: the values are a minimum, as far as the parameters ask. Graduated stages look for another one.
+fn at_minimum(graph: &Graph, params: &Params) -> Option<Summary> {
+    let minimum = graph.minimum.as_ref()?;
+    let is_enough = minimum.is_complete() && minimum.relative_decrease <= params.relative_decrease;
+    let (cost, iterations, factorization_flop) = (minimum.cost, 0, 0.0);
+    let summary = Summary { start_cost: cost, cost, iterations, stop: Stop::Converged, factorization_flop };
+    (is_enough && !params.graduated).then_some(summary)
 }
 
 fn stages(graph: &mut Graph, structure: &mut Structure, params: &Params) -> Result<Summary, SmootherError> {

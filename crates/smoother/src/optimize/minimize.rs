@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Below this predicted decrease of χ² nothing is left to gain: a millionth of a standard deviation, squared.
-const NOTHING_TO_GAIN: f64 = 1e-12;
+pub(crate) const NOTHING_TO_GAIN: f64 = 1e-12;
 
 /// Minimizes the cost with graduation `mu` from the values of the graph, and stores the minimum there.
 pub(super) fn minimize(

@@ -42,7 +42,7 @@ impl Params {
 /// Why the iteration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// The predicted decrease of the last step was small.
+    /// The predicted decrease of the last step was small, or the values were known to be a minimum.
     Converged,
     /// No shorter step lowers the cost either: rounding, or wrong Jacobians.
     NoDecrease,
@@ -57,10 +57,10 @@ pub struct Summary {
     pub start_cost: f64,
     /// Cost at the values after.
     pub cost: f64,
-    /// Number of linearizations.
+    /// Number of linearizations: 0 if the values were known to be a minimum.
     pub iterations: usize,
     /// Why it ended.
     pub stop: Stop,
-    /// Additions and multiplications of one numeric factorization: $`\sum_k c_k^2`$ with $`c_k`$ entries in column k of the Cholesky factor.
+    /// Additions and multiplications of one numeric factorization: $`\sum_k c_k^2`$ with $`c_k`$ entries in column k of the Cholesky factor; 0 if there was none.
     pub factorization_flop: f64,
 }

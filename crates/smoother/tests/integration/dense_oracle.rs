@@ -24,9 +24,11 @@ fn all_methods_end_at_the_same_minimum() {
             let summary = world.graph.optimize(&params).unwrap();
             assert_eq!(summary.stop, Stop::Converged, "{method:?}");
             assert!(summary.cost < 0.5 * summary.start_cost && summary.cost > 1.0, "{method:?}: {summary:?}");
+            let value = *world.graph.value(world.poses[20]).unwrap();
+            world.graph.set_value(world.poses[20], value).unwrap(); // the graph does not know that it is the minimum
             let again = world.graph.optimize(&params).unwrap();
             assert!(
-                again.stop == Stop::Converged && again.iterations <= 2,
+                again.stop == Stop::Converged && (1..=2).contains(&again.iterations),
                 "{method:?} at the minimum: {again:?}"
             );
             (summary.cost, *world.graph.value(world.poses[20]).unwrap())

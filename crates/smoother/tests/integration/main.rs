@@ -2,6 +2,7 @@
 
 mod common;
 mod dense_oracle;
+mod edge_by_edge;
 mod g2o;
 mod hostile;
 mod laws;
