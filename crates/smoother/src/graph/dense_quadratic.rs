@@ -81,3 +81,33 @@ impl DenseQuadratic {
         Some(Self { offsets: Vec::new(), hessian, gradient, constant })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    /// A range determines one direction of a landmark. What rounding leaves of the other one is no information.
+    #[test]
+    fn one_range_does_not_determine_a_landmark() {
+        for k in 0..10_000 {
+            let (sin, cos) = (0.1 + 1.7 * f64::from(k)).sin_cos();
+            let direction = Vector2::new(cos, sin);
+            let mut range = DenseQuadratic::zeros(&[0], &[2]);
+            range.add_block(
+                0,
+                0,
+                DMatrix::from_column_slice(2, 2, (direction * direction.transpose() * 7.0).as_slice()),
+            );
+            assert!(!range.is_definite(), "{k}: {}", range.hessian);
+            let across = Vector2::new(-sin, cos);
+            range.add_block(
+                0,
+                0,
+                DMatrix::from_column_slice(2, 2, (across * across.transpose() * 7.0).as_slice()),
+            );
+            assert!(range.is_definite(), "{k}: {}", range.hessian);
+        }
+    }
+}
